@@ -1,0 +1,1 @@
+# Installed headers are the libraries' include/ folders verbatim.

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "material/frame.h"
+#include "material/material.h"
+#include "material/microfacet.h"
+#include "material/spectral_basis.h"
+
+namespace atrium::material {
+
+/// What can happen to light at a surface. Diffuse events read the radiosity field; the others are
+/// "specular" in the light-path table (S): followed by rays. PaneStraight is neutral in that table.
+enum Event : std::uint32_t {
+  kDiffuseReflection = 1,    ///< body, C1/C2
+  kDiffuseTransmission = 2,  ///< translucent sheet, C5/C6
+  kLobeReflection = 4,       ///< rough interface, C1/C3
+  kLobeTransmission = 8,     ///< rough refraction, C4/C5
+  kMirror = 16,              ///< Dirac, C3
+  kRefraction = 32,          ///< Dirac, C4
+  kPaneReflection = 64,      ///< Dirac, C3
+  kPaneStraight = 128,       ///< Dirac, direction kept, C4
+  kAllEvents = 255,
+  kDiffuseEvents = kDiffuseReflection | kDiffuseTransmission,
+  kLobeEvents = kLobeReflection | kLobeTransmission,
+  kDiracEvents = kMirror | kRefraction | kPaneReflection | kPaneStraight,
+  kSpecularEvents = kLobeEvents | kDiracEvents
+};
+
+/// Radiance is scaled by (n1/n2)^2 where it enters a denser medium; flux (photons) is not.
+enum class Transport { Radiance, Flux };
+
+/// Values of a BSDF for two directions, by term; without the cosine [1/sr].
+template <int N>
+struct BsdfValue {
+  Spectrum<N> diffuse;  ///< reflection or transmission, whichever side wi is on
+  Spectrum<N> lobe;
+  [[nodiscard]] Spectrum<N> sum() const { return diffuse + lobe; }
+};
+
+template <int N>
+struct BsdfSample {
+  Vec3f wi;
+  Spectrum<N> weight;  ///< f |cos| / pdf, for Dirac events the event's reflectance / its probability
+  float pdf = 0.0f;    ///< [1/sr] of all non-Dirac events asked for; 0 for a Dirac event
+  Event event = kDiffuseReflection;
+  [[nodiscard]] bool dirac() const { return (event & kDiracEvents) != 0; }
+};
+
+/// The share of light that the interface of a coupled material lets through, B(mu), tabulated
+/// (MATERIAL_MODEL 5.5), with its cosine mean.
+template <int N>
+struct CoupledBody {
+  static constexpr int kSteps = 64;
+  std::array<Spectrum<N>, kSteps + 1> transmitted;  ///< B at mu = i / kSteps
+  Spectrum<N> mean;                                 ///< B-bar = 2 * integral of B mu dmu
+
+  [[nodiscard]] Spectrum<N> at(float mu) const {
+    const float x = std::min(std::max(mu, 0.0f), 1.0f) * kSteps;
+    const int i = std::min(static_cast<int>(x), kSteps - 1);
+    const float f = x - static_cast<float>(i);
+    return transmitted[static_cast<std::size_t>(i)] * (1.0f - f) +
+           transmitted[static_cast<std::size_t>(i) + 1] * f;
+  }
+};
+
+/// A material with its spectra turned into lanes; one per material of a scene.
+template <int N>
+struct ResolvedMaterial {
+  const Material* source = nullptr;
+  MaterialTraits traits;
+  Spectrum<N> n, k;                ///< absolute index and n kappa per lane
+  float n_mean = 1.5f;             ///< steers refracted directions
+  Spectrum<N> reflectance_zero;    ///< F(0) against air
+  Spectrum<N> body_reflectance;    ///< rho_d or rho_b before textures
+  Spectrum<N> body_transmittance;
+  Spectrum<N> transmission_tint;
+  Spectrum<N> extinction;          ///< K [1/m]
+  Spectrum<N> emission;
+  Spectrum<N> pane_kd;             ///< K d
+  std::optional<GaussianFacets> facets;            ///< rough lobe
+  std::shared_ptr<const CoupledBody<N>> coupled;   ///< shared by copies of the same material
+};
+template <int N>
+[[nodiscard]] ResolvedMaterial<N> resolve_material(const Material& material, const SpectralBasis& basis);
+
+/// A material's numbers at a point: what textures multiplied, which side is looked at.
+///
+/// Local frame: z is the shading normal on the viewer's side; directions are unit and point away
+/// from the surface; wo.z > 0. All densities are per solid angle.
+template <int N>
+class Bsdf {
+ public:
+  Bsdf() = default;
+  /// \param front  the viewer is on the outside (front) of the surface; decides which index is where.
+  Bsdf(const ResolvedMaterial<N>& material, bool front, const Spectrum<N>& body_factor,
+       const Spectrum<N>& reflectance_factor, float roughness_factor);
+
+  [[nodiscard]] bool has(std::uint32_t events) const { return (events_ & events) != 0; }
+  [[nodiscard]] std::uint32_t events() const { return events_; }
+
+  /// f(wo, wi) without the cosine; Dirac events are not part of it.
+  [[nodiscard]] BsdfValue<N> eval(const Vec3f& wo, const Vec3f& wi, Transport transport = Transport::Radiance) const;
+  /// Density of sample() for the same events [1/sr]; Dirac events count in the choice only.
+  [[nodiscard]] float pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events = kAllEvents) const;
+  /// \param u_choice, u  in [0, 1).  nullopt: the sample is absorbed (weight 0).
+  [[nodiscard]] std::optional<BsdfSample<N>> sample(const Vec3f& wo, float u_choice, const Vec2f& u,
+                                                    std::uint32_t events = kAllEvents,
+                                                    Transport transport = Transport::Radiance) const;
+
+  /// Exitance per irradiance of the diffuse parts: with E the irradiance of this side (coupled:
+  /// E_B), radiance towards wo is diffuse_reflectance(wo) * E / pi.
+  [[nodiscard]] Spectrum<N> diffuse_reflectance(const Vec3f& wo) const;
+  [[nodiscard]] Spectrum<N> diffuse_transmittance() const { return diffuse_transmission_; }
+  /// Hemispherical: share of E (E_B) that leaves as diffuse flux.
+  [[nodiscard]] Spectrum<N> diffuse_albedo() const;
+  /// Weight of an incident direction in E_B relative to E: B(mu) / B-bar; 1 if not coupled.
+  [[nodiscard]] Spectrum<N> body_weight(float mu) const;
+  [[nodiscard]] bool coupled() const { return coupled_ != nullptr; }
+  /// Estimate of the directional albedo of some events (choice of lobes, denoising guides).
+  [[nodiscard]] Spectrum<N> albedo(const Vec3f& wo, std::uint32_t events) const;
+
+  /// Does the path enter (or leave) the body when it goes to wi.z < 0 by refraction?
+  [[nodiscard]] const Spectrum<N>& extinction() const { return extinction_; }
+
+ private:
+  struct Choice;
+  [[nodiscard]] Spectrum<N> fresnel(float c) const;
+  [[nodiscard]] Spectrum<N> coherent(float mu_a, float mu_b) const;  // Gamma_r
+  [[nodiscard]] Spectrum<N> lobe_reflection(const Vec3f& wo, const Vec3f& wi) const;
+  [[nodiscard]] Spectrum<N> lobe_transmission(const Vec3f& wo, const Vec3f& wi, Transport transport) const;
+  [[nodiscard]] float lobe_pdf(const Vec3f& wo, const Vec3f& wi, float p_reflect, float p_transmit) const;
+  [[nodiscard]] std::array<float, 8> probabilities(const Vec3f& wo, std::uint32_t events) const;
+
+  std::uint32_t events_ = 0;
+  bool front_ = true;
+  Spectrum<N> diffuse_reflection_, diffuse_transmission_;
+  Spectrum<N> eta_, k_;             ///< n2/n1 and k2/n1 per lane, seen from the viewer's side
+  float eta_mean_ = 1.0f;
+  float k_rg_ = 0.0f, k_tp_rg_ = 0.0f;
+  Spectrum<N> tint_;                ///< on directed transmission
+  Spectrum<N> reflectance_factor_ = Spectrum<N>::one();
+  Spectrum<N> pane_kd_;
+  Spectrum<N> extinction_;
+  const GaussianFacets* facets_ = nullptr;
+  std::optional<GaussianFacets> own_facets_;
+  const CoupledBody<N>* coupled_ = nullptr;
+  Spectrum<N> coherent_g_;          ///< (4 pi n1 sigma / lambda)^2 per lane; 0 with a lobe only
+  bool pane_ = false;
+};
+
+extern template class Bsdf<1>;
+extern template class Bsdf<3>;
+extern template class Bsdf<4>;
+extern template class Bsdf<8>;
+
+}  // namespace atrium::material

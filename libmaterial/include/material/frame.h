@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace atrium {
+
+using Vec2f = Eigen::Vector2f;
+using Vec3f = Eigen::Vector3f;
+using Vec2d = Eigen::Vector2d;
+using Vec3d = Eigen::Vector3d;
+
+/// Orthonormal frame with z = the normal. Local directions have z as their cosine.
+struct Frame {
+  Vec3f x, y, z;
+
+  /// Branch-free basis around a unit normal. Source: Duff et al. 2017 (JCGT 6(1)).
+  explicit Frame(const Vec3f& n) : z(n) {
+    const float sign = std::copysign(1.0f, n.z());
+    const float a = -1.0f / (sign + n.z());
+    const float b = n.x() * n.y() * a;
+    x = Vec3f(1.0f + sign * n.x() * n.x() * a, sign * b, -sign * n.x());
+    y = Vec3f(b, sign + n.y() * n.y() * a, -n.y());
+  }
+  [[nodiscard]] Vec3f to_local(const Vec3f& v) const { return {v.dot(x), v.dot(y), v.dot(z)}; }
+  [[nodiscard]] Vec3f to_world(const Vec3f& v) const { return x * v.x() + y * v.y() + z * v.z(); }
+};
+
+/// Cosine-weighted direction on the upper hemisphere, z up; density cos/pi [1/sr].
+/// \param u  in [0, 1)^2. Concentric map, Shirley & Chiu 1997.
+[[nodiscard]] Vec3f sample_cosine_hemisphere(const Vec2f& u);
+
+inline Vec3f sample_cosine_hemisphere(const Vec2f& u) {
+  const float ox = 2.0f * u.x() - 1.0f;
+  const float oy = 2.0f * u.y() - 1.0f;
+  if (ox == 0.0f && oy == 0.0f) return {0.0f, 0.0f, 1.0f};
+  constexpr float quarter_pi = 0.785398163397448f;
+  const bool wide = std::abs(ox) > std::abs(oy);
+  const float r = wide ? ox : oy;
+  const float phi = wide ? quarter_pi * (oy / ox) : 2.0f * quarter_pi - quarter_pi * (ox / oy);
+  const float px = r * std::cos(phi);
+  const float py = r * std::sin(phi);
+  return {px, py, std::sqrt(std::max(0.0f, 1.0f - px * px - py * py))};
+}
+
+}  // namespace atrium

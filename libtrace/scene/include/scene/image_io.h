@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "material/texture.h"
+#include "scene/image.h"
+
+namespace atrium::scene {
+
+/// Image files, by OpenImageIO in a module of its own that is loaded when first used (linking it
+/// would cost every start half a second). All functions may be called from any thread.
+
+/// Starts loading the module on a background thread: call it as soon as an image will be needed.
+void preload_image_io();
+/// false: built without, or the module cannot be loaded.
+[[nodiscard]] bool image_io_available();
+
+/// Decodes PNG, JPEG, ... to 8 bits. `bytes`: the file in memory, `name` for messages and format.
+/// \throws Error if it is no image; RuntimeFailure if the module is missing.
+[[nodiscard]] material::Texture read_texture(const std::filesystem::path& file);
+[[nodiscard]] material::Texture decode_texture(const std::vector<std::uint8_t>& bytes, const std::string& name);
+
+/// Linear floats of EXR, PFM, HDR (also PNG/JPEG, decoded from sRGB).
+[[nodiscard]] Image read_image(const std::filesystem::path& file);
+
+/// .exr: all channels, 32-bit float, metadata. .pfm .hdr: R, G, B linear. .png .jpg: R, G, B taken
+/// as display values in [0, 1] (tone map first), 8 bits. Written to a temporary beside it, then
+/// renamed: the file is complete or absent. \throws Error: unknown ending, unwritable folder;
+/// RuntimeFailure: failed while writing.
+void write_image(const Image& image, const std::filesystem::path& file);
+
+}  // namespace atrium::scene

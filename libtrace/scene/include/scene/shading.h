@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "material/bsdf.h"
+#include "material/spectral_basis.h"
+#include "scene/light_sampler.h"
+#include "scene/ray_query.h"
+#include "scene/surface_field.h"
+
+namespace atrium::scene {
+
+/// A surface point, turned to the side it is looked at from, with its BSDF.
+template <int N>
+struct Interaction {
+  SurfacePoint point;
+  Side side = Side::Front;  ///< side of the triangle that wo is on
+  Vec3f ng;                 ///< geometric normal on that side
+  Frame frame;              ///< shading frame, z on that side
+  material::Bsdf<N> bsdf;
+
+  [[nodiscard]] Vec3f to_local(const Vec3f& w) const { return frame.to_local(w); }
+  [[nodiscard]] Vec3f to_world(const Vec3f& w) const { return frame.to_world(w); }
+};
+
+/// A scene made ready for light transport with N lanes: materials and lights resolved in a basis.
+/// The one place where radiosity and ray tracing look materials up. Thread-safe.
+template <int N>
+class Shading {
+ public:
+  Shading(const RayQuery& query, const material::SpectralBasis& basis);
+
+  [[nodiscard]] const Scene& scene() const { return query_->scene(); }
+  [[nodiscard]] const RayQuery& query() const { return *query_; }
+  [[nodiscard]] const material::SpectralBasis& basis() const { return basis_; }
+  [[nodiscard]] const LightSampler<N>& lights() const { return lights_; }
+  [[nodiscard]] const material::ResolvedMaterial<N>& material(MaterialId id) const {
+    return materials_[id.value];
+  }
+
+  /// Closest surface; points that an alpha mask cuts out are passed.
+  [[nodiscard]] std::optional<SurfacePoint> closest(const Ray& ray, Counters& counters, Counter kind,
+                                                    float* distance = nullptr) const;
+  /// \param wo  unit, away from the surface (minus the ray's direction).
+  [[nodiscard]] Interaction<N> interact(const SurfacePoint& point, const Vec3f& wo) const;
+  /// Share of light that goes straight along the ray: 0 behind opaque things and solids, the
+  /// product of the panes' transmittance else.
+  [[nodiscard]] Spectrum<N> transmittance(const Ray& ray, Counters& counters, Counter kind) const;
+
+ private:
+  const RayQuery* query_;
+  material::SpectralBasis basis_;
+  LightSampler<N> lights_;
+  std::vector<material::ResolvedMaterial<N>> materials_;
+  [[nodiscard]] bool cut_out(const SurfacePoint& point) const;
+};
+
+extern template class Shading<1>;
+extern template class Shading<3>;
+extern template class Shading<4>;
+extern template class Shading<8>;
+
+}  // namespace atrium::scene
