@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,7 +23,6 @@ struct Ray {
 struct Hit {
   float t = 0.0f;
   float u = 0.0f, v = 0.0f;  ///< barycentric of corners 1 and 2
-  Vec3f ng;                  ///< unit geometric normal by winding, scene coordinates
   ObjectId object;
   std::uint32_t triangle = 0;  ///< within the object's mesh
 };
