@@ -1,1 +1,379 @@
-namespace atrium::material {}
+#include "material/bsdf.h"
+
+#include <numbers>
+
+#include "material/fresnel.h"
+#include "material/pane.h"
+
+namespace atrium::material {
+namespace {
+constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+constexpr float kSmoothest = 2.0e3f;  // c beyond which a lobe is narrower than a pixel ever sees
+}  // namespace
+
+template <int N>
+Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_factor,
+              const Spectrum<N>& reflectance_factor, float roughness_factor)
+    : tint_(m.transmission_tint),
+      reflectance_factor_(reflectance_factor),
+      extinction_(m.extinction) {
+  const Material& s = *m.source;
+  const bool solid = s.medium == Material::Medium::Solid;
+  const bool inside = solid && !front;
+  for (int i = 0; i < N; ++i) {
+    eta_[i] = inside ? 1.0f / m.n[i] : m.n[i];
+    k_[i] = inside ? 0.0f : m.k[i];
+  }
+  eta_mean_ = inside ? 1.0f / m.n_mean : m.n_mean;
+
+  if (s.medium == Material::Medium::Pane) {
+    pane_kd_ = m.pane_kd;
+    events_ = kPaneReflection | kPaneStraight;
+    return;
+  }
+  k_rg_ = static_cast<float>(s.k_rg);
+  k_tp_rg_ = solid ? static_cast<float>(s.k_tp_rg) : 0.0f;
+  coupled_ = m.coupled.get();
+  if (coupled_ != nullptr || s.combination == Material::Combination::Coupled) {
+    diffuse_reflection_ = m.body_reflectance * body_factor;
+  } else {
+    diffuse_reflection_ = m.body_reflectance * body_factor * static_cast<float>(s.k_df);
+    diffuse_transmission_ = m.body_transmittance * body_factor * static_cast<float>(s.k_tp_df);
+    // The paper's two sums of weights do not bound the albedo of a transmitting surface.
+    if (!diffuse_transmission_.is_zero() || k_tp_rg_ > 0.0f)
+      for (int i = 0; i < N; ++i) {
+        const float sum = diffuse_reflection_[i] + diffuse_transmission_[i];
+        const float room = 1.0f - std::max(k_rg_, k_tp_rg_);
+        if (sum > room) {
+          diffuse_reflection_[i] *= room / sum;
+          diffuse_transmission_[i] *= room / sum;
+        }
+      }
+  }
+  if (!diffuse_reflection_.is_zero()) events_ |= kDiffuseReflection;
+  if (!diffuse_transmission_.is_zero()) events_ |= kDiffuseTransmission;
+
+  facets_ = m.facets;
+  if (facets_ && roughness_factor != 1.0f)
+    facets_.emplace(
+        std::min(facets_->c() / std::max(roughness_factor * roughness_factor, 1e-6f), kSmoothest));
+  coherent_ = facets_ && s.sigma.has_value();
+  coherent_g_ = m.coherent_g;
+  const bool matched = eta_ == Spectrum<N>::one() && k_.is_zero();
+  const bool mirror = !facets_ || coherent_;
+  if (k_rg_ > 0.0f && !matched)
+    events_ |= (facets_ ? kLobeReflection : 0U) | (mirror ? kMirror : 0U);
+  if (k_tp_rg_ > 0.0f) {
+    if (matched)
+      events_ |= kRefraction;
+    else
+      events_ |= (facets_ ? kLobeTransmission : 0U) | (mirror ? kRefraction : 0U);
+  }
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::fresnel(float c) const {
+  return Spectrum<N>::generate([&](int i) { return material::fresnel(c, eta_[i], k_[i]).mean(); }) *
+         reflectance_factor_;
+}
+
+template <int N>
+float Bsdf<N>::cos_refracted(float cos_incident) const {
+  const float sin2 = (1.0f - cos_incident) * (1.0f + cos_incident) / (eta_mean_ * eta_mean_);
+  return sin2 < 1.0f ? std::sqrt(1.0f - sin2) : 0.0f;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::coherent_reflection(float mu) const {
+  if (!facets_) return Spectrum<N>::one();
+  if (!coherent_) return Spectrum<N>::zero();
+  return Spectrum<N>::generate([&](int i) { return std::exp(-coherent_g_[i] * mu * mu); });
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::coherent_transmission(float mu) const {
+  if (!facets_ || events_ == kRefraction) return Spectrum<N>::one();
+  if (!coherent_) return Spectrum<N>::zero();
+  const float d = mu - eta_mean_ * cos_refracted(mu);
+  return Spectrum<N>::generate([&](int i) { return std::exp(-0.25f * coherent_g_[i] * d * d); });
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::mirror_weight(float mu) const {
+  return fresnel(mu) * coherent_reflection(mu) * k_rg_;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::refraction_weight(float mu, Transport transport) const {
+  if (!(cos_refracted(mu) > 0.0f)) return {};
+  const float scale = transport == Transport::Radiance ? 1.0f / (eta_mean_ * eta_mean_) : 1.0f;
+  return (Spectrum<N>::one() - fresnel(mu)) * coherent_transmission(mu) * tint_ *
+         (k_tp_rg_ * scale);
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::lobe_reflection(const Vec3f& wo, const Vec3f& wi) const {
+  const Vec3f h = (wo + wi).normalized();
+  const float bh = wo.dot(h);
+  const float g = g_vcavity(wi.z(), wo.z(), h.z(), bh, bh);
+  const float d = facets_->density(h) * g * k_rg_ / (4.0f * wi.z() * wo.z());
+  if (!(d > 0.0f)) return {};
+  return fresnel(bh) * d * (Spectrum<N>::one() - coherent_reflection(std::min(wi.z(), wo.z())));
+}
+
+template <int N>
+std::optional<Vec3f> Bsdf<N>::facet_of_transmission(const Vec3f& wo, const Vec3f& wi) const {
+  const Vec3f m = -(wo + eta_mean_ * wi);
+  const float length = m.norm();
+  if (!(length > 1e-7f)) return std::nullopt;
+  const Vec3f h = (eta_mean_ > 1.0f ? m : Vec3f(-m)) / length;
+  if (!(h.dot(wo) > 0.0f) || !(h.dot(wi) < 0.0f) || !(h.z() > 0.0f)) return std::nullopt;
+  return h;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::lobe_transmission(const Vec3f& wo, const Vec3f& wi,
+                                       Transport transport) const {
+  const auto h = facet_of_transmission(wo, wi);
+  if (!h) return {};
+  const float bh = wo.dot(*h);
+  const float lh = wi.dot(*h);
+  const float denominator = eta_mean_ * lh + bh;
+  const float g = g_vcavity(-wi.z(), wo.z(), h->z(), -lh, bh);
+  float scale = -lh * bh / (-wi.z() * wo.z()) * facets_->density(*h) * g * k_tp_rg_ /
+                (denominator * denominator);
+  if (!(scale > 0.0f)) return {};
+  if (transport == Transport::Flux) scale *= eta_mean_ * eta_mean_;
+  Spectrum<N> share = Spectrum<N>::one();
+  if (coherent_) {
+    const Spectrum<N> a = coherent_transmission(wo.z());
+    // Seen from the far side: its cosine outside is |wi.z|, inside that of the refracted ray.
+    const float mu_far = cos_refracted(wo.z());
+    const float d =
+        std::sqrt(std::max(0.0f, 1.0f - eta_mean_ * eta_mean_ * (1.0f - wi.z() * wi.z()))) -
+        eta_mean_ * -wi.z();
+    share = Spectrum<N>::generate([&](int i) {
+      const float b = mu_far > 0.0f ? std::exp(-0.25f * coherent_g_[i] * d * d) : 0.0f;
+      return 1.0f - std::max(a[i], b);
+    });
+  }
+  return (Spectrum<N>::one() - fresnel(bh)) * tint_ * share * scale;
+}
+
+template <int N>
+BsdfValue<N> Bsdf<N>::eval(const Vec3f& wo, const Vec3f& wi, Transport transport) const {
+  BsdfValue<N> v;
+  if (!(wo.z() > 0.0f) || wi.z() == 0.0f) return v;
+  if (wi.z() > 0.0f) {
+    if (has(kDiffuseReflection)) {
+      v.diffuse = diffuse_reflection_ * kInvPi;
+      if (coupled_ != nullptr)
+        for (int i = 0; i < N; ++i)
+          v.diffuse[i] *= coupled_->at(wo.z())[i] * coupled_->at(wi.z())[i] /
+                          std::max(coupled_->mean[i], 1e-6f);
+    }
+    if (has(kLobeReflection)) v.lobe = lobe_reflection(wo, wi);
+  } else {
+    if (has(kDiffuseTransmission)) v.diffuse = diffuse_transmission_ * kInvPi;
+    if (has(kLobeTransmission)) v.lobe = lobe_transmission(wo, wi, transport);
+  }
+  return v;
+}
+
+template <int N>
+typename Bsdf<N>::Choice Bsdf<N>::choose(const Vec3f& wo, std::uint32_t events) const {
+  events &= events_;
+  Choice c;
+  const float mu = wo.z();
+  if ((events & kDiffuseReflection) != 0) c.diffuse_reflection = diffuse_reflectance(wo).mean();
+  if ((events & kDiffuseTransmission) != 0) c.diffuse_transmission = diffuse_transmission_.mean();
+  if ((events & (kLobeEvents | kMirror | kRefraction)) != 0) {
+    const Spectrum<N> f = fresnel(mu);
+    const float reflected = k_rg_ * f.mean();
+    const float transmitted = k_tp_rg_ * ((Spectrum<N>::one() - f) * tint_).mean();
+    if ((events & kLobeEvents) != 0) {
+      if ((events & kLobeReflection) != 0)
+        c.lobe += reflected * (1.0f - coherent_reflection(mu).mean());
+      if ((events & kLobeTransmission) != 0)
+        c.lobe += transmitted * (1.0f - coherent_transmission(mu).mean());
+      c.lobe = std::max(c.lobe, 0.02f);  // facets may reflect where the mean surface hardly does
+    }
+    if ((events & kMirror) != 0) c.mirror = mirror_weight(mu).mean();
+    if ((events & kRefraction) != 0) c.refraction = refraction_weight(mu, Transport::Flux).mean();
+  }
+  if ((events & (kPaneReflection | kPaneStraight)) != 0) {
+    const PaneTerms p = pane(mu, eta_mean_, pane_kd_.mean());
+    if ((events & kPaneReflection) != 0) c.pane_reflection = p.reflectance;
+    if ((events & kPaneStraight) != 0) c.pane_straight = p.transmittance * tint_.mean();
+  }
+  const float sum = c.diffuse_reflection + c.diffuse_transmission + c.lobe + c.mirror +
+                    c.refraction + c.pane_reflection + c.pane_straight;
+  if (!(sum > 0.0f)) return {};
+  const float scale = 1.0f / sum;
+  for (float* p : {&c.diffuse_reflection, &c.diffuse_transmission, &c.lobe, &c.mirror,
+                   &c.refraction, &c.pane_reflection, &c.pane_straight})
+    *p *= scale;
+  return c;
+}
+
+template <int N>
+float Bsdf<N>::reflect_probability(float cos_facet, std::uint32_t events) const {
+  const bool reflect = has(events & kLobeReflection);
+  const bool transmit = has(events & kLobeTransmission);
+  if (!(reflect && transmit)) return reflect ? 1.0f : 0.0f;
+  const float f = fresnel(cos_facet).mean();
+  const float r = k_rg_ * f;
+  const float t = k_tp_rg_ * (1.0f - f) * tint_.mean();
+  return r + t > 0.0f ? r / (r + t) : 1.0f;
+}
+
+template <int N>
+float Bsdf<N>::lobe_pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const {
+  if (wi.z() > 0.0f) {
+    if (!has(events & kLobeReflection)) return 0.0f;
+    const Vec3f h = (wo + wi).normalized();
+    const float bh = wo.dot(h);
+    return bh > 0.0f ? facets_->pdf(h) / (4.0f * bh) * reflect_probability(bh, events) : 0.0f;
+  }
+  if (!has(events & kLobeTransmission)) return 0.0f;
+  const auto h = facet_of_transmission(wo, wi);
+  if (!h) return 0.0f;
+  const float bh = wo.dot(*h);
+  const float lh = wi.dot(*h);
+  const float d = eta_mean_ * lh + bh;
+  return facets_->pdf(*h) * eta_mean_ * eta_mean_ * -lh / (d * d) *
+         (1.0f - reflect_probability(bh, events));
+}
+
+template <int N>
+float Bsdf<N>::pdf(const Choice& c, const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const {
+  float p =
+      (wi.z() > 0.0f ? c.diffuse_reflection : c.diffuse_transmission) * std::abs(wi.z()) * kInvPi;
+  if (c.lobe > 0.0f) p += c.lobe * lobe_pdf(wo, wi, events);
+  return p;
+}
+
+template <int N>
+float Bsdf<N>::pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const {
+  if (!(wo.z() > 0.0f) || wi.z() == 0.0f) return 0.0f;
+  return pdf(choose(wo, events), wo, wi, events);
+}
+
+template <int N>
+std::optional<Vec3f> Bsdf<N>::sample_lobe(const Vec3f& wo, float u_choice, const Vec2f& u,
+                                          std::uint32_t events) const {
+  const Vec3f h = facets_->sample(u);
+  const float bh = wo.dot(h);
+  if (!(bh > 0.0f)) return std::nullopt;
+  if (u_choice < reflect_probability(bh, events)) {
+    const Vec3f wi = 2.0f * bh * h - wo;
+    return wi.z() > 0.0f ? std::optional<Vec3f>(wi) : std::nullopt;
+  }
+  const float ct = cos_refracted(bh);
+  if (!(ct > 0.0f)) return std::nullopt;
+  const Vec3f wi = (-wo / eta_mean_ + (bh / eta_mean_ - ct) * h).normalized();
+  return wi.z() < 0.0f ? std::optional<Vec3f>(wi) : std::nullopt;
+}
+
+template <int N>
+std::optional<BsdfSample<N>> Bsdf<N>::sample_dirac(const Choice& c, const Vec3f& wo, float x,
+                                                   Transport transport) const {
+  BsdfSample<N> s;
+  const Vec3f mirrored(-wo.x(), -wo.y(), wo.z());
+  if (x < c.mirror) {
+    s = {mirrored, mirror_weight(wo.z()) / c.mirror, 0.0f, kMirror};
+  } else if ((x -= c.mirror) < c.refraction) {
+    const float ct = cos_refracted(wo.z());
+    s = {Vec3f(-wo.x() / eta_mean_, -wo.y() / eta_mean_, -ct).normalized(),
+         refraction_weight(wo.z(), transport) / c.refraction, 0.0f, kRefraction};
+  } else {
+    x -= c.refraction;
+    const bool reflect = x < c.pane_reflection;
+    const float probability = reflect ? c.pane_reflection : c.pane_straight;
+    if (!(probability > 0.0f)) return std::nullopt;
+    s = {reflect ? mirrored : Vec3f(-wo), {}, 0.0f, reflect ? kPaneReflection : kPaneStraight};
+    for (int i = 0; i < N; ++i) {
+      const PaneTerms p = pane(wo.z(), eta_[i], pane_kd_[i]);
+      s.weight[i] = (reflect ? p.reflectance : p.transmittance * tint_[i]) / probability;
+    }
+  }
+  return s;
+}
+
+template <int N>
+std::optional<BsdfSample<N>> Bsdf<N>::sample(const Vec3f& wo, float u_choice, const Vec2f& u,
+                                             std::uint32_t events, Transport transport) const {
+  if (!(wo.z() > 0.0f) || !has(events)) return std::nullopt;
+  const Choice c = choose(wo, events);
+  const float diffuse = c.diffuse_reflection + c.diffuse_transmission;
+  const float scattered = diffuse + c.lobe;
+  if (u_choice >= scattered) {
+    auto s = sample_dirac(c, wo, u_choice - scattered, transport);
+    if (s && s->weight.is_zero()) return std::nullopt;
+    return s;
+  }
+  BsdfSample<N> s;
+  if (u_choice < diffuse) {
+    s.wi = sample_cosine_hemisphere(u);
+    s.event = kDiffuseReflection;
+    if (u_choice >= c.diffuse_reflection) {
+      s.wi.z() = -s.wi.z();
+      s.event = kDiffuseTransmission;
+    }
+  } else {
+    const auto wi = sample_lobe(wo, (u_choice - diffuse) / c.lobe, u, events);
+    if (!wi) return std::nullopt;
+    s.wi = *wi;
+    s.event = wi->z() > 0.0f ? kLobeReflection : kLobeTransmission;
+  }
+  s.pdf = pdf(c, wo, s.wi, events);
+  if (!(s.pdf > 0.0f)) return std::nullopt;
+  const BsdfValue<N> f = eval(wo, s.wi, transport);
+  if ((events & (s.wi.z() > 0.0f ? kDiffuseReflection : kDiffuseTransmission)) != 0)
+    s.weight += f.diffuse;
+  if ((events & (s.wi.z() > 0.0f ? kLobeReflection : kLobeTransmission)) != 0) s.weight += f.lobe;
+  s.weight *= std::abs(s.wi.z()) / s.pdf;
+  return s;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::diffuse_reflectance(const Vec3f& wo) const {
+  return coupled_ != nullptr ? diffuse_reflection_ * coupled_->at(wo.z()) : diffuse_reflection_;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::diffuse_albedo() const {
+  return coupled_ != nullptr ? diffuse_reflection_ * coupled_->mean : diffuse_reflection_;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::body_weight(float mu) const {
+  if (coupled_ == nullptr) return Spectrum<N>::one();
+  const Spectrum<N> b = coupled_->at(mu);
+  return Spectrum<N>::generate([&](int i) { return b[i] / std::max(coupled_->mean[i], 1e-6f); });
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::albedo(const Vec3f& wo, std::uint32_t events) const {
+  Spectrum<N> a;
+  events &= events_;
+  if ((events & kDiffuseReflection) != 0) a += diffuse_reflectance(wo);
+  if ((events & kDiffuseTransmission) != 0) a += diffuse_transmission_;
+  if ((events & (kLobeReflection | kMirror)) != 0) a += fresnel(wo.z()) * k_rg_;
+  if ((events & (kLobeTransmission | kRefraction)) != 0)
+    a += (Spectrum<N>::one() - fresnel(wo.z())) * tint_ * k_tp_rg_;
+  if ((events & (kPaneReflection | kPaneStraight)) != 0)
+    for (int i = 0; i < N; ++i) {
+      const PaneTerms p = pane(wo.z(), eta_[i], pane_kd_[i]);
+      if ((events & kPaneReflection) != 0) a[i] += p.reflectance;
+      if ((events & kPaneStraight) != 0) a[i] += p.transmittance * tint_[i];
+    }
+  return a;
+}
+
+template class Bsdf<1>;
+template class Bsdf<3>;
+template class Bsdf<4>;
+template class Bsdf<8>;
+
+}  // namespace atrium::material

@@ -44,8 +44,9 @@ struct BsdfValue {
 template <int N>
 struct BsdfSample {
   Vec3f wi;
-  Spectrum<N> weight;  ///< f |cos| / pdf, for Dirac events the event's reflectance / its probability
-  float pdf = 0.0f;    ///< [1/sr] of all non-Dirac events asked for; 0 for a Dirac event
+  Spectrum<N>
+      weight;        ///< f |cos| / pdf, for Dirac events the event's reflectance / its probability
+  float pdf = 0.0f;  ///< [1/sr] of all non-Dirac events asked for; 0 for a Dirac event
   Event event = kDiffuseReflection;
   [[nodiscard]] bool dirac() const { return (event & kDiracEvents) != 0; }
 };
@@ -72,20 +73,22 @@ template <int N>
 struct ResolvedMaterial {
   const Material* source = nullptr;
   MaterialTraits traits;
-  Spectrum<N> n, k;                ///< absolute index and n kappa per lane
-  float n_mean = 1.5f;             ///< steers refracted directions
-  Spectrum<N> reflectance_zero;    ///< F(0) against air
-  Spectrum<N> body_reflectance;    ///< rho_d or rho_b before textures
+  Spectrum<N> n, k;              ///< absolute index and n kappa per lane
+  float n_mean = 1.5f;           ///< steers refracted directions
+  Spectrum<N> reflectance_zero;  ///< F(0) against air
+  Spectrum<N> body_reflectance;  ///< rho_d or rho_b before textures
   Spectrum<N> body_transmittance;
   Spectrum<N> transmission_tint;
-  Spectrum<N> extinction;          ///< K [1/m]
+  Spectrum<N> extinction;  ///< K [1/m]
   Spectrum<N> emission;
-  Spectrum<N> pane_kd;             ///< K d
-  std::optional<GaussianFacets> facets;            ///< rough lobe
-  std::shared_ptr<const CoupledBody<N>> coupled;   ///< shared by copies of the same material
+  Spectrum<N> pane_kd;                   ///< K d
+  std::optional<GaussianFacets> facets;  ///< rough lobe
+  Spectrum<N> coherent_g;                ///< (4 pi sigma / lambda)^2, if the source has sigma
+  std::shared_ptr<const CoupledBody<N>> coupled;  ///< shared by copies of the same material
 };
 template <int N>
-[[nodiscard]] ResolvedMaterial<N> resolve_material(const Material& material, const SpectralBasis& basis);
+[[nodiscard]] ResolvedMaterial<N> resolve_material(const Material& material,
+                                                   const SpectralBasis& basis);
 
 /// A material's numbers at a point: what textures multiplied, which side is looked at.
 ///
@@ -95,7 +98,8 @@ template <int N>
 class Bsdf {
  public:
   Bsdf() = default;
-  /// \param front  the viewer is on the outside (front) of the surface; decides which index is where.
+  /// \param front  the viewer is on the outside (front) of the surface; decides which index is
+  /// where.
   Bsdf(const ResolvedMaterial<N>& material, bool front, const Spectrum<N>& body_factor,
        const Spectrum<N>& reflectance_factor, float roughness_factor);
 
@@ -103,13 +107,15 @@ class Bsdf {
   [[nodiscard]] std::uint32_t events() const { return events_; }
 
   /// f(wo, wi) without the cosine; Dirac events are not part of it.
-  [[nodiscard]] BsdfValue<N> eval(const Vec3f& wo, const Vec3f& wi, Transport transport = Transport::Radiance) const;
+  [[nodiscard]] BsdfValue<N> eval(const Vec3f& wo, const Vec3f& wi,
+                                  Transport transport = Transport::Radiance) const;
   /// Density of sample() for the same events [1/sr]; Dirac events count in the choice only.
-  [[nodiscard]] float pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events = kAllEvents) const;
+  [[nodiscard]] float pdf(const Vec3f& wo, const Vec3f& wi,
+                          std::uint32_t events = kAllEvents) const;
   /// \param u_choice, u  in [0, 1).  nullopt: the sample is absorbed (weight 0).
-  [[nodiscard]] std::optional<BsdfSample<N>> sample(const Vec3f& wo, float u_choice, const Vec2f& u,
-                                                    std::uint32_t events = kAllEvents,
-                                                    Transport transport = Transport::Radiance) const;
+  [[nodiscard]] std::optional<BsdfSample<N>> sample(
+      const Vec3f& wo, float u_choice, const Vec2f& u, std::uint32_t events = kAllEvents,
+      Transport transport = Transport::Radiance) const;
 
   /// Exitance per irradiance of the diffuse parts: with E the irradiance of this side (coupled:
   /// E_B), radiance towards wo is diffuse_reflectance(wo) * E / pi.
@@ -123,33 +129,49 @@ class Bsdf {
   /// Estimate of the directional albedo of some events (choice of lobes, denoising guides).
   [[nodiscard]] Spectrum<N> albedo(const Vec3f& wo, std::uint32_t events) const;
 
-  /// Does the path enter (or leave) the body when it goes to wi.z < 0 by refraction?
+  /// K of the body behind (front) or on this side (back) of a solid [1/m].
   [[nodiscard]] const Spectrum<N>& extinction() const { return extinction_; }
 
  private:
-  struct Choice;
+  /// Probabilities of the kinds of events at wo; the lobe's choice between reflection and
+  /// transmission is made at the sampled facet.
+  struct Choice {
+    float diffuse_reflection = 0, diffuse_transmission = 0, lobe = 0;
+    float mirror = 0, refraction = 0, pane_reflection = 0, pane_straight = 0;
+  };
+  [[nodiscard]] Choice choose(const Vec3f& wo, std::uint32_t events) const;
   [[nodiscard]] Spectrum<N> fresnel(float c) const;
-  [[nodiscard]] Spectrum<N> coherent(float mu_a, float mu_b) const;  // Gamma_r
+  [[nodiscard]] float cos_refracted(float cos_incident) const;      // 0: total reflection
+  [[nodiscard]] Spectrum<N> coherent_reflection(float mu) const;    // Gamma_r
+  [[nodiscard]] Spectrum<N> coherent_transmission(float mu) const;  // Gamma_t
+  [[nodiscard]] Spectrum<N> mirror_weight(float mu) const;
+  [[nodiscard]] Spectrum<N> refraction_weight(float mu, Transport transport) const;
   [[nodiscard]] Spectrum<N> lobe_reflection(const Vec3f& wo, const Vec3f& wi) const;
-  [[nodiscard]] Spectrum<N> lobe_transmission(const Vec3f& wo, const Vec3f& wi, Transport transport) const;
-  [[nodiscard]] float lobe_pdf(const Vec3f& wo, const Vec3f& wi, float p_reflect, float p_transmit) const;
-  [[nodiscard]] std::array<float, 8> probabilities(const Vec3f& wo, std::uint32_t events) const;
+  [[nodiscard]] Spectrum<N> lobe_transmission(const Vec3f& wo, const Vec3f& wi,
+                                              Transport transport) const;
+  [[nodiscard]] std::optional<Vec3f> facet_of_transmission(const Vec3f& wo, const Vec3f& wi) const;
+  [[nodiscard]] float reflect_probability(float cos_facet, std::uint32_t events) const;
+  [[nodiscard]] float lobe_pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const;
+  [[nodiscard]] float pdf(const Choice& choice, const Vec3f& wo, const Vec3f& wi,
+                          std::uint32_t events) const;
+  [[nodiscard]] std::optional<Vec3f> sample_lobe(const Vec3f& wo, float u_choice, const Vec2f& u,
+                                                 std::uint32_t events) const;
+  [[nodiscard]] std::optional<BsdfSample<N>> sample_dirac(const Choice& choice, const Vec3f& wo,
+                                                          float x, Transport transport) const;
 
   std::uint32_t events_ = 0;
-  bool front_ = true;
   Spectrum<N> diffuse_reflection_, diffuse_transmission_;
-  Spectrum<N> eta_, k_;             ///< n2/n1 and k2/n1 per lane, seen from the viewer's side
+  Spectrum<N> eta_, k_;  ///< n2/n1 and k2/n1 per lane, seen from the viewer's side
   float eta_mean_ = 1.0f;
   float k_rg_ = 0.0f, k_tp_rg_ = 0.0f;
   Spectrum<N> tint_;                ///< on directed transmission
-  Spectrum<N> reflectance_factor_ = Spectrum<N>::one();
+  Spectrum<N> reflectance_factor_;  ///< on the interface's reflectance
   Spectrum<N> pane_kd_;
   Spectrum<N> extinction_;
-  const GaussianFacets* facets_ = nullptr;
-  std::optional<GaussianFacets> own_facets_;
+  Spectrum<N> coherent_g_;  ///< (4 pi sigma / lambda)^2 per lane
+  bool coherent_ = false;   ///< sigma is given: lobe and mirror share the light
+  std::optional<GaussianFacets> facets_;
   const CoupledBody<N>* coupled_ = nullptr;
-  Spectrum<N> coherent_g_;          ///< (4 pi n1 sigma / lambda)^2 per lane; 0 with a lobe only
-  bool pane_ = false;
 };
 
 extern template class Bsdf<1>;

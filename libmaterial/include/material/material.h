@@ -80,7 +80,7 @@ struct Material {
   double pane_thickness = 0.004;   ///< d [m], Pane only
 
   // Emission.
-  SpectralValue emission = 0.0;  ///< radiance; unit of the scene (nit or W/(sr m^2))
+  SpectralValue emission = 0.0;          ///< radiance; unit of the scene (nit or W/(sr m^2))
   bool emission_spectral_watts = false;  ///< emission is sampled in W/(sr m^2 nm)
   TextureSlot emission_texture;
   bool emits_both_sides = false;
@@ -109,15 +109,15 @@ void validate(const Material& material, const std::string& where);
 struct MaterialTraits {
   bool diffuse_reflection = false;
   bool diffuse_transmission = false;
-  bool mirror = false;          ///< Dirac reflection
-  bool rough = false;           ///< a lobe of finite width
-  bool transmits = false;       ///< directed transmission, smooth or rough, solid
+  bool mirror = false;     ///< Dirac reflection
+  bool rough = false;      ///< a lobe of finite width
+  bool transmits = false;  ///< directed transmission, smooth or rough, solid
   bool pane = false;
   bool coupled = false;
   bool emissive = false;
   bool alpha_mask = false;
-  bool chromatic = false;       ///< lanes differ
-  bool wavelength_data = false; ///< given by samples or optical constants
+  bool chromatic = false;        ///< lanes differ
+  bool wavelength_data = false;  ///< given by samples or optical constants
   bool textured = false;
   bool absorbing_medium = false;
 };

@@ -23,8 +23,8 @@ class GaussianFacets {
 
  private:
   float c_;
-  float norm_;   // N(c)
-  float q_;      // 1 - exp(-pi^2 c^2 / 4)
+  float norm_;  // N(c)
+  float q_;     // 1 - exp(-pi^2 c^2 / 4)
 };
 
 /// N(c) = 1 / (pi I(c)), to 1e-11 relative for c in [0, 1e6].

@@ -14,11 +14,12 @@ namespace atrium::material {
 /// What the lanes of a Spectrum mean, and how given spectra become lanes and lanes become RGB.
 ///
 /// Lanes are relative to the D65 white of Rec. 709: a stimulus with the value v in every lane is
-/// the RGB (v, v, v). So reflectances are themselves, an RGB emission in nits keeps its numbers, and
-/// the illuminance of lanes is the Y of to_rgb(). For wavelength bands,
+/// the RGB (v, v, v). So reflectances are themselves, an RGB emission in nits keeps its numbers,
+/// and the illuminance of lanes is the Y of to_rgb(). For wavelength bands,
 ///   rgb = to_rgb * lanes with to_rgb(c, i) = integral over band i of D65 * cmf, rows sum to 1;
 ///   lanes = from_rgb * rgb is the smoothest set of non-negative band values with
-///   to_rgb * from_rgb = 1 and rows of from_rgb that sum to 1 (white stays white, no energy gained).
+///   to_rgb * from_rgb = 1 and rows of from_rgb that sum to 1 (white stays white, no energy
+///   gained).
 class SpectralBasis {
  public:
   enum class Kind { Grey, Rgb, Bands };
@@ -53,8 +54,12 @@ class SpectralBasis {
   template <int N>
   [[nodiscard]] Spectrum<N> from_rgb(const Rgb& rgb) const;
 
-  [[nodiscard]] const Eigen::Matrix<float, 3, Eigen::Dynamic>& to_rgb_matrix() const { return to_rgb_; }
-  [[nodiscard]] const Eigen::Matrix<float, Eigen::Dynamic, 3>& from_rgb_matrix() const { return from_rgb_; }
+  [[nodiscard]] const Eigen::Matrix<float, 3, Eigen::Dynamic>& to_rgb_matrix() const {
+    return to_rgb_;
+  }
+  [[nodiscard]] const Eigen::Matrix<float, Eigen::Dynamic, 3>& from_rgb_matrix() const {
+    return from_rgb_;
+  }
 
   [[nodiscard]] std::string describe() const;  ///< "1 grey lane", "3 RGB lanes", "8 bands ..."
 
@@ -63,10 +68,10 @@ class SpectralBasis {
   Kind kind_ = Kind::Grey;
   int lanes_ = 1;
   std::vector<double> wavelengths_nm_;
-  std::vector<double> band_edges_nm_;                       // lanes + 1, Bands only
-  Eigen::Matrix<float, 3, Eigen::Dynamic> to_rgb_;          // 3 x lanes
-  Eigen::Matrix<float, Eigen::Dynamic, 3> from_rgb_;        // lanes x 3
-  Eigen::MatrixXd response_;                                // lanes x 5 nm grid, rows sum to 1
+  std::vector<double> band_edges_nm_;                 // lanes + 1, Bands only
+  Eigen::Matrix<float, 3, Eigen::Dynamic> to_rgb_;    // 3 x lanes
+  Eigen::Matrix<float, Eigen::Dynamic, 3> from_rgb_;  // lanes x 3
+  Eigen::MatrixXd response_;                          // lanes x 5 nm grid, rows sum to 1
 };
 
 // ---- inline parts: used per sample ----

@@ -9,7 +9,8 @@
 namespace atrium::material {
 
 /// A spectrum given by samples; linear between them, constant beyond the ends.
-/// Invariant (checked by make_sampled_spectrum): wavelengths strictly increase, same length, finite.
+/// Invariant (checked by make_sampled_spectrum): wavelengths strictly increase, same length,
+/// finite.
 struct SampledSpectrum {
   std::vector<double> wavelength_nm;
   std::vector<double> value;
@@ -26,8 +27,8 @@ struct SampledSpectrum {
 /// or samples. A SpectralBasis turns it into the lanes that a scene is computed with.
 using SpectralValue = std::variant<double, Rgb, SampledSpectrum>;
 
-[[nodiscard]] bool is_achromatic(const SpectralValue& value);   ///< equal in every lane of any basis
-[[nodiscard]] bool is_sampled(const SpectralValue& value);      ///< needs wavelengths to be exact
+[[nodiscard]] bool is_achromatic(const SpectralValue& value);  ///< equal in every lane of any basis
+[[nodiscard]] bool is_sampled(const SpectralValue& value);     ///< needs wavelengths to be exact
 [[nodiscard]] double max_value(const SpectralValue& value);
 [[nodiscard]] double min_value(const SpectralValue& value);
 

@@ -105,11 +105,16 @@ using Rgb = Spectrum<3>;
 template <class F>
 decltype(auto) with_lanes(int lanes, F&& f) {
   switch (lanes) {
-    case 1: return f(std::integral_constant<int, 1>{});
-    case 3: return f(std::integral_constant<int, 3>{});
-    case 4: return f(std::integral_constant<int, 4>{});
-    case 8: return f(std::integral_constant<int, 8>{});
-    default: throw std::invalid_argument("with_lanes: lanes must be 1, 3, 4 or 8");
+    case 1:
+      return f(std::integral_constant<int, 1>{});
+    case 3:
+      return f(std::integral_constant<int, 3>{});
+    case 4:
+      return f(std::integral_constant<int, 4>{});
+    case 8:
+      return f(std::integral_constant<int, 8>{});
+    default:
+      throw std::invalid_argument("with_lanes: lanes must be 1, 3, 4 or 8");
   }
 }
 

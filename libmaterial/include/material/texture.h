@@ -17,9 +17,9 @@ struct Texture {
   std::string name;
   int width = 0;
   int height = 0;
-  int channels = 0;  ///< 1 to 4
+  int channels = 0;                  ///< 1 to 4
   std::vector<std::uint8_t> pixels;  ///< height x width x channels, rows from the top
-  bool srgb = true;  ///< the first three channels are sRGB-encoded
+  bool srgb = true;                  ///< the first three channels are sRGB-encoded
   Wrap wrap_u = Wrap::Repeat;
   Wrap wrap_v = Wrap::Repeat;
 

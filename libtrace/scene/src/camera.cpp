@@ -22,8 +22,8 @@ Camera::CameraRay Camera::ray(const Vec2d& film, double image_aspect) const {
     case Kind::Panorama: {
       const double phi = x * std::numbers::pi;
       const double theta = film.y() * std::numbers::pi;
-      direction = Vec3d(std::sin(theta) * std::sin(phi), std::cos(theta),
-                        -std::sin(theta) * std::cos(phi));
+      direction =
+          Vec3d(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi));
       break;
     }
   }

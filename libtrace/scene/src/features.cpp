@@ -12,9 +12,12 @@ bool light_is_chromatic(const Light& light) {
   return std::visit(
       [](const auto& kind) {
         using T = std::decay_t<decltype(kind)>;
-        if constexpr (std::is_same_v<T, ProfileLight>) return !material::is_achromatic(kind.scale);
-        else if constexpr (std::is_same_v<T, DirectionalLight>) return !material::is_achromatic(kind.irradiance);
-        else return !material::is_achromatic(kind.intensity);
+        if constexpr (std::is_same_v<T, ProfileLight>)
+          return !material::is_achromatic(kind.scale);
+        else if constexpr (std::is_same_v<T, DirectionalLight>)
+          return !material::is_achromatic(kind.irradiance);
+        else
+          return !material::is_achromatic(kind.intensity);
       },
       light.kind);
 }
@@ -67,7 +70,8 @@ Features find_features(const Scene& scene) {
   for (const Light& light : scene.lights) count_light(f, light);
   if (scene.environment && material::max_value(scene.environment->radiance) > 0.0) {
     f.environment = true;
-    f.chromatic |= scene.environment->image.valid() || !material::is_achromatic(scene.environment->radiance);
+    f.chromatic |=
+        scene.environment->image.valid() || !material::is_achromatic(scene.environment->radiance);
   }
   return f;
 }
@@ -84,7 +88,8 @@ std::vector<Decision> decide(const Features& f) {
       "mirrors, panes, solids or lobes send light onto diffuse surfaces",
       "no specular surface can focus or deflect light");
   add("transmission (C4, C5)", f.solids || f.panes, "solids or panes", "nothing transmits light");
-  add("diffuse transmission (C6)", f.diffuse_transmission, "translucent sheets", "no translucent sheet");
+  add("diffuse transmission (C6)", f.diffuse_transmission, "translucent sheets",
+      "no translucent sheet");
   add("mirror and lobe rays (C3)", f.mirrors || f.rough || f.solids || f.panes, "specular surfaces",
       "no specular surface");
   add("weighted irradiance E_B", f.coupled, "bodies under an interface", "no coupled material");
@@ -93,7 +98,8 @@ std::vector<Decision> decide(const Features& f) {
   add("extinction", f.absorbing_media, "a medium absorbs", "no absorbing medium");
   add("textures", f.textures, "materials read images", "nothing is textured");
   add("environment", f.environment, "light from outside the model", "no environment");
-  add("colour lanes", f.chromatic || f.wavelength_data, "colours differ between lanes", "grey scene: one lane");
+  add("colour lanes", f.chromatic || f.wavelength_data, "colours differ between lanes",
+      "grey scene: one lane");
   add("wavelengths", f.wavelength_data, "spectra or optical constants are given", "RGB data only");
   return d;
 }

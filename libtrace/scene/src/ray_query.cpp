@@ -27,14 +27,18 @@ struct Context {
         static_cast<RTCFeatureFlags>(RTC_FEATURE_FLAG_TRIANGLE | RTC_FEATURE_FLAG_INSTANCE);
   }
 };
-void trace_closest(RTCScene scene, Context& c, RTCRayHit* h) { rtcIntersect1(scene, h, &c.intersect); }
+void trace_closest(RTCScene scene, Context& c, RTCRayHit* h) {
+  rtcIntersect1(scene, h, &c.intersect);
+}
 void trace_any(RTCScene scene, Context& c, RTCRay* r) { rtcOccluded1(scene, r, &c.occluded); }
 #else
 struct Context {
   RTCIntersectContext context;
   Context() { rtcInitIntersectContext(&context); }
 };
-void trace_closest(RTCScene scene, Context& c, RTCRayHit* h) { rtcIntersect1(scene, &c.context, h); }
+void trace_closest(RTCScene scene, Context& c, RTCRayHit* h) {
+  rtcIntersect1(scene, &c.context, h);
+}
 void trace_any(RTCScene scene, Context& c, RTCRay* r) { rtcOccluded1(scene, &c.context, r); }
 #endif
 
@@ -43,7 +47,8 @@ constexpr float kLargest = 1.0e18f;
 // Debian's Embree aborts the process on such rays, so every ray passes here.
 bool acceptable(const Ray& ray) {
   const auto fine = [](const Vec3f& v) {
-    return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest && std::abs(v.z()) <= kLargest;
+    return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest &&
+           std::abs(v.z()) <= kLargest;
   };
   return fine(ray.origin) && fine(ray.direction) && ray.tmin >= 0.0f && ray.tmin <= kLargest &&
          ray.tmax >= ray.tmin;
@@ -89,11 +94,11 @@ struct RayQuery::Impl {
 
   RTCGeometry make_geometry(const Mesh& mesh) const {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                          3 * sizeof(float), mesh.positions.size()));
+    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
     auto* t = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
-                                mesh.triangles.size()));
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), mesh.triangles.size()));
     if (v == nullptr || t == nullptr) {
       rtcReleaseGeometry(g);
       throw RuntimeFailure("not enough memory for the geometry of mesh '" + mesh.name + "'");
@@ -124,13 +129,15 @@ struct RayQuery::Impl {
   RTCGeometry make_instance(const Object& object) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(g, shared_scene(object.mesh));
-    const Eigen::Matrix<float, 3, 4> m = object.to_scene.affine();  // column major, as Embree reads it
+    const Eigen::Matrix<float, 3, 4> m =
+        object.to_scene.affine();  // column major, as Embree reads it
     rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m.data());
     return g;
   }
 };
 
-RayQuery::RayQuery(const Scene& scene, const RayQueryOptions& options) : impl_(std::make_unique<Impl>()) {
+RayQuery::RayQuery(const Scene& scene, const RayQueryOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   m.scene = &scene;
   m.device = rtcNewDevice(options.device_config.empty() ? nullptr : options.device_config.c_str());
@@ -176,11 +183,13 @@ std::optional<Hit> RayQuery::closest(const Ray& ray, Counters& counters, Counter
   Context context;
   trace_closest(impl_->top, context, &h);
   if (h.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const std::uint32_t object = h.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? h.hit.instID[0] : h.hit.geomID;
+  const std::uint32_t object =
+      h.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? h.hit.instID[0] : h.hit.geomID;
   return Hit{h.ray.tfar, h.hit.u, h.hit.v, ObjectId(object), h.hit.primID};
 }
 
-bool RayQuery::occluded(const Ray& ray, Counters& counters, Counter kind, std::uint32_t mask) const {
+bool RayQuery::occluded(const Ray& ray, Counters& counters, Counter kind,
+                        std::uint32_t mask) const {
   if (!acceptable(ray)) {
     ++counters[Counter::RaysRefused];
     return false;
@@ -196,7 +205,8 @@ bool RayQuery::occluded(const Ray& ray, Counters& counters, Counter kind, std::u
 const Scene& RayQuery::scene() const { return *impl_->scene; }
 bool RayQuery::has(std::uint32_t mask) const { return (impl_->present & mask) != 0; }
 std::size_t RayQuery::memory_bytes() const {
-  return static_cast<std::size_t>(std::max<ssize_t>(0, __atomic_load_n(&impl_->bytes, __ATOMIC_RELAXED)));
+  return static_cast<std::size_t>(
+      std::max<ssize_t>(0, __atomic_load_n(&impl_->bytes, __ATOMIC_RELAXED)));
 }
 
 }  // namespace atrium::scene

@@ -1,1 +1,134 @@
-namespace atrium::scene {}
+#include "scene/shading.h"
+
+namespace atrium::scene {
+
+template <int N>
+Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis)
+    : query_(&query), basis_(basis), lights_(query.scene(), basis) {
+  materials_.reserve(scene().materials.size());
+  for (const material::Material& m : scene().materials)
+    materials_.push_back(material::resolve_material<N>(m, basis));
+}
+
+template <int N>
+bool Shading<N>::cut_out(const SurfacePoint& point) const {
+  const material::Material& m = scene().materials[point.material.value];
+  if (!(m.alpha_cutoff > 0.0f)) return false;
+  float alpha = m.alpha_factor;
+  if (m.alpha_texture.texture.valid())
+    alpha *= scene().textures[m.alpha_texture.texture.value].channel(
+        m.alpha_texture.transform(point.uv), 3);
+  return alpha < m.alpha_cutoff;
+}
+
+template <int N>
+std::optional<SurfacePoint> Shading<N>::closest(const Ray& ray, Counters& counters, Counter kind,
+                                                float* distance) const {
+  Ray r = ray;
+  float travelled = 0.0f;
+  while (const auto hit = query_->closest(r, counters, kind)) {
+    const SurfacePoint point = surface_point(scene(), *hit);
+    travelled += hit->t;
+    if (!cut_out(point)) {
+      if (distance != nullptr) *distance = travelled;
+      return point;
+    }
+    r.origin = offset_origin(point, r.direction);
+    r.tmin = 0.0f;
+    r.tmax -= hit->t;
+    if (!(r.tmax > 0.0f)) break;
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// The shading normal on the viewer's side, bent by a normal map if the material has one.
+Vec3f mapped_normal(const Scene& scene, const material::Material& m, const SurfacePoint& point,
+                    const Vec3f& ns) {
+  if (!m.normal_texture.texture.valid() || point.dpdu.isZero()) return ns;
+  const material::Texture& image = scene.textures[m.normal_texture.texture.value];
+  const Vec2f uv = m.normal_texture.transform(point.uv);
+  const float x = (2.0f * image.channel(uv, 0) - 1.0f) * m.normal_scale;
+  const float y = (2.0f * image.channel(uv, 1) - 1.0f) * m.normal_scale;
+  const float z = 2.0f * image.channel(uv, 2) - 1.0f;
+  const Vec3f t = (point.dpdu - point.dpdu.dot(ns) * ns);
+  const float length = t.norm();
+  if (!(length > 0.0f)) return ns;
+  const Vec3f tangent = t / length;
+  const Vec3f n = x * tangent + y * ns.cross(tangent) + z * ns;
+  return n.squaredNorm() > 1e-8f ? Vec3f(n.normalized()) : ns;
+}
+
+}  // namespace
+
+template <int N>
+Interaction<N> Shading<N>::interact(const SurfacePoint& point, const Vec3f& wo) const {
+  const material::ResolvedMaterial<N>& resolved = materials_[point.material.value];
+  const material::Material& m = *resolved.source;
+  const bool front = wo.dot(point.ng) >= 0.0f;
+  const Vec3f ng = front ? point.ng : Vec3f(-point.ng);
+  Vec3f ns = mapped_normal(scene(), m, point, point.ns);
+  if (!front) ns = -ns;
+  // Interpolated or mapped normals may turn away from the viewer: such points shade as flat.
+  if (!(ns.dot(wo) > 1e-3f)) ns = ng;
+
+  Spectrum<N> body = Spectrum<N>::one();
+  Spectrum<N> reflectance = Spectrum<N>::one();
+  float roughness = 1.0f;
+  const auto& textures = scene().textures;
+  if (m.body_texture.texture.valid())
+    body = basis_.template from_rgb<N>(
+        textures[m.body_texture.texture.value].rgb(m.body_texture.transform(point.uv)));
+  if (!point.color.isOnes(0.0f)) {
+    const Spectrum<N> tint =
+        basis_.template from_rgb<N>(make_rgb(point.color.x(), point.color.y(), point.color.z()));
+    body *= tint;
+  }
+  if (m.reflectance_texture.texture.valid())
+    reflectance = basis_.template from_rgb<N>(textures[m.reflectance_texture.texture.value].rgb(
+        m.reflectance_texture.transform(point.uv)));
+  if (m.roughness_texture.texture.valid())
+    roughness = textures[m.roughness_texture.texture.value].channel(
+        m.roughness_texture.transform(point.uv), m.roughness_texture.channel);
+  return Interaction<N>{point, front ? Side::Front : Side::Back, ng, Frame(ns),
+                        material::Bsdf<N>(resolved, front, body, reflectance, roughness)};
+}
+
+template <int N>
+Spectrum<N> Shading<N>::transmittance(const Ray& ray, Counters& counters, Counter kind) const {
+  if (query_->has(kOpaque) && query_->occluded(ray, counters, kind, kOpaque)) return {};
+  Spectrum<N> t = Spectrum<N>::one();
+  if (!query_->has(kPane | kAlpha)) return t;
+  Ray r = ray;
+  while (const auto hit = query_->closest(r, counters, kind, kPane | kAlpha)) {
+    const SurfacePoint point = surface_point(scene(), *hit);
+    if (!cut_out(point)) {
+      const Interaction<N> surface = interact(point, -r.direction);
+      if (!surface.bsdf.has(material::kPaneStraight)) return {};
+      t *= surface.bsdf.albedo(surface.to_local(-r.direction), material::kPaneStraight);
+    }
+    r.origin = offset_origin(point, r.direction);
+    r.tmin = 0.0f;
+    r.tmax -= hit->t;
+    if (!(r.tmax > 0.0f) || t.is_zero()) break;
+  }
+  return t;
+}
+
+template <int N>
+Spectrum<N> Shading<N>::visibility(const SurfacePoint& from, const LightSample<N>& light,
+                                   Counters& counters, Counter kind) const {
+  // Ends just before the light, which is a surface too; relative, as the rounding of t is.
+  constexpr float kBeforeTheLight = 1.0f - 1e-4f;
+  return transmittance(
+      {offset_origin(from, light.wi), light.wi, 0.0f, light.distance * kBeforeTheLight}, counters,
+      kind);
+}
+
+template class Shading<1>;
+template class Shading<3>;
+template class Shading<4>;
+template class Shading<8>;
+
+}  // namespace atrium::scene

@@ -11,8 +11,8 @@ struct GridPlace {
   float x = 0.0f, y = 0.0f;  // in cells
 };
 
-GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object, std::uint32_t triangle,
-                const Vec3f& position) {
+GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
+                std::uint32_t triangle, const Vec3f& position) {
   const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
   if (index >= field.triangle_facet.size()) return {};
   const std::uint32_t f = field.triangle_facet[index];
@@ -64,13 +64,15 @@ std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std:
   return p.facet != nullptr ? nearest_element(*this, p) : kNone;
 }
 
-SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object, std::uint32_t triangle,
-                                            const Vec3f& position, Side side) const {
+SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
+                                            std::uint32_t triangle, const Vec3f& position,
+                                            Side side) const {
   Stencil s;
   const GridPlace p = place(*this, scene, object, triangle, position);
   if (p.facet == nullptr) return s;
   const auto usable = [&](std::uint32_t e) {
-    return e != kNone && valid[static_cast<std::size_t>(e) * 2 + static_cast<std::size_t>(side)] != 0;
+    return e != kNone &&
+           valid[static_cast<std::size_t>(e) * 2 + static_cast<std::size_t>(side)] != 0;
   };
   const float x = p.x - 0.5f;
   const float y = p.y - 0.5f;
@@ -81,7 +83,8 @@ SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
   float sum = 0.0f;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      const std::uint32_t e = cell(*this, *p.facet, static_cast<int>(fx) + i, static_cast<int>(fy) + j);
+      const std::uint32_t e =
+          cell(*this, *p.facet, static_cast<int>(fx) + i, static_cast<int>(fy) + j);
       if (!usable(e)) continue;
       const float w = (i != 0 ? wx : 1.0f - wx) * (j != 0 ? wy : 1.0f - wy);
       if (!(w > 0.0f)) continue;

@@ -20,8 +20,8 @@ std::uint64_t Scene::triangle_count() const {
 
 namespace {
 
-Vec3f shading_normal(const Object& object, const Mesh& mesh, const Triangle& t, float b0, float u, float v,
-                     const Vec3f& ng) {
+Vec3f shading_normal(const Object& object, const Mesh& mesh, const Triangle& t, float b0, float u,
+                     float v, const Vec3f& ng) {
   if (mesh.normals.empty()) return ng;
   Vec3f n = b0 * mesh.normals[t[0]] + u * mesh.normals[t[1]] + v * mesh.normals[t[2]];
   if (object.instanced) n = object.to_scene.linear().inverse().transpose() * n;
@@ -33,7 +33,8 @@ Vec3f shading_normal(const Object& object, const Mesh& mesh, const Triangle& t, 
 
 }  // namespace
 
-SurfacePoint surface_point(const Scene& scene, ObjectId id, std::uint32_t triangle, float u, float v) {
+SurfacePoint surface_point(const Scene& scene, ObjectId id, std::uint32_t triangle, float u,
+                           float v) {
   const Object& object = scene.objects[id.value];
   const Mesh& mesh = scene.meshes[object.mesh.value];
   const Triangle& t = mesh.triangles[triangle];
@@ -68,7 +69,8 @@ SurfacePoint surface_point(const Scene& scene, ObjectId id, std::uint32_t triang
     const float det = d1.x() * d2.y() - d1.y() * d2.x();
     if (det != 0.0f) p.dpdu = (d2.y() * e1 - d1.y() * e2) / det;
   }
-  if (!mesh.colors.empty()) p.color = b0 * mesh.colors[t[0]] + u * mesh.colors[t[1]] + v * mesh.colors[t[2]];
+  if (!mesh.colors.empty())
+    p.color = b0 * mesh.colors[t[0]] + u * mesh.colors[t[1]] + v * mesh.colors[t[2]];
   return p;
 }
 

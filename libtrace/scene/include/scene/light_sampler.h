@@ -13,13 +13,13 @@ namespace atrium::scene {
 /// A light as seen from a point: where to send the shadow ray and what arrives if it is free.
 template <int N>
 struct LightSample {
-  Vec3f wi;                ///< unit, towards the light
-  float distance = 0.0f;   ///< to the sampled point; infinity for sun and environment
-  Spectrum<N> radiance;    ///< radiance of the light towards the point; for Dirac lights the
-                           ///< irradiance on a plane facing them
-  float pdf = 0.0f;        ///< [1/sr] including the choice of the light; Dirac: probability of the choice
-  bool dirac = false;      ///< point, spot, directional: cannot be hit by chance
-  std::uint32_t light = 0; ///< index for light groups: lights first, then emissive triangles
+  Vec3f wi;               ///< unit, towards the light
+  float distance = 0.0f;  ///< to the sampled point; infinity for sun and environment
+  Spectrum<N> radiance;   ///< radiance of the light towards the point; for Dirac lights the
+                          ///< irradiance on a plane facing them
+  float pdf = 0.0f;  ///< [1/sr] including the choice of the light; Dirac: probability of the choice
+  bool dirac = false;       ///< point, spot, directional: cannot be hit by chance
+  std::uint32_t light = 0;  ///< index for light groups: lights first, then emissive triangles
 };
 
 /// Where a photon starts.
@@ -27,7 +27,7 @@ template <int N>
 struct EmissionSample {
   Vec3f origin;
   Vec3f direction;
-  Spectrum<N> weight;      ///< flux carried by this sample: Phi estimate for one sample
+  Spectrum<N> weight;  ///< flux carried by this sample: Phi estimate for one sample
 };
 
 /// Chooses lights for next event estimation and photons: a bounding hierarchy over all lights and
@@ -42,10 +42,11 @@ class LightSampler {
   [[nodiscard]] bool empty() const;
   /// \param normal  of the receiver, zero: none. Lights behind it may still be chosen for surfaces
   /// that transmit; pass zero then. \param u_choice, u  in [0, 1).
-  [[nodiscard]] std::optional<LightSample<N>> sample(const Vec3f& p, const Vec3f& normal, float u_choice,
-                                                     const Vec2f& u) const;
+  [[nodiscard]] std::optional<LightSample<N>> sample(const Vec3f& p, const Vec3f& normal,
+                                                     float u_choice, const Vec2f& u) const;
   /// Density [1/sr] with which sample() finds the emissive point that a ray from p hits.
-  [[nodiscard]] float pdf(const Vec3f& p, const Vec3f& normal, const SurfacePoint& hit, float distance) const;
+  [[nodiscard]] float pdf(const Vec3f& p, const Vec3f& normal, const SurfacePoint& hit,
+                          float distance) const;
   /// Same for the environment in a direction.
   [[nodiscard]] float pdf_environment(const Vec3f& p, const Vec3f& normal, const Vec3f& wi) const;
 
@@ -55,7 +56,8 @@ class LightSampler {
   [[nodiscard]] Spectrum<N> environment(const Vec3f& direction) const;
 
   /// A starting ray for light tracing, by power.
-  [[nodiscard]] std::optional<EmissionSample<N>> sample_emission(float u_choice, const Vec2f& u_position,
+  [[nodiscard]] std::optional<EmissionSample<N>> sample_emission(float u_choice,
+                                                                 const Vec2f& u_position,
                                                                  const Vec2f& u_direction) const;
   /// Total emitted flux by lane (environment: what enters the scene's bounding sphere).
   [[nodiscard]] Spectrum<N> flux() const;

@@ -29,9 +29,9 @@ struct Hit {
 
 /// Classes of geometry that a ray may be told to ignore.
 enum RayMask : std::uint32_t {
-  kOpaque = 1,   ///< stops every ray (smooth and rough solids included)
-  kPane = 2,     ///< thin panes: passed straight with their transmittance
-  kAlpha = 4,    ///< may be cut out by a texture
+  kOpaque = 1,  ///< stops every ray (smooth and rough solids included)
+  kPane = 2,    ///< thin panes: passed straight with their transmittance
+  kAlpha = 4,   ///< may be cut out by a texture
   kEverything = 7
 };
 
@@ -66,10 +66,10 @@ class RayQuery {
 
 /// A point on a surface with what shading needs.
 struct SurfacePoint {
-  Vec3f position;      ///< on the triangle, recomputed from barycentrics
-  float error = 0.0f;  ///< bound on the rounding of position [m]
-  Vec3f ng;            ///< geometric normal by winding
-  Vec3f ns;            ///< shading normal, same side as ng (interpolated; no normal map)
+  Vec3f position;              ///< on the triangle, recomputed from barycentrics
+  float error = 0.0f;          ///< bound on the rounding of position [m]
+  Vec3f ng;                    ///< geometric normal by winding
+  Vec3f ns;                    ///< shading normal, same side as ng (interpolated; no normal map)
   Vec3f dpdu = Vec3f::Zero();  ///< tangent of the uv map, zero without one
   Vec2f uv = Vec2f::Zero();
   Vec3f color = Vec3f::Ones();
@@ -78,8 +78,8 @@ struct SurfacePoint {
   std::uint32_t triangle = 0;
   float u = 0.0f, v = 0.0f;
 };
-[[nodiscard]] SurfacePoint surface_point(const Scene& scene, ObjectId object, std::uint32_t triangle,
-                                         float u, float v);
+[[nodiscard]] SurfacePoint surface_point(const Scene& scene, ObjectId object,
+                                         std::uint32_t triangle, float u, float v);
 [[nodiscard]] inline SurfacePoint surface_point(const Scene& scene, const Hit& hit) {
   return surface_point(scene, hit.object, hit.triangle, hit.u, hit.v);
 }

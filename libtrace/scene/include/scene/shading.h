@@ -40,13 +40,16 @@ class Shading {
   }
 
   /// Closest surface; points that an alpha mask cuts out are passed.
-  [[nodiscard]] std::optional<SurfacePoint> closest(const Ray& ray, Counters& counters, Counter kind,
-                                                    float* distance = nullptr) const;
+  [[nodiscard]] std::optional<SurfacePoint> closest(const Ray& ray, Counters& counters,
+                                                    Counter kind, float* distance = nullptr) const;
   /// \param wo  unit, away from the surface (minus the ray's direction).
   [[nodiscard]] Interaction<N> interact(const SurfacePoint& point, const Vec3f& wo) const;
   /// Share of light that goes straight along the ray: 0 behind opaque things and solids, the
   /// product of the panes' transmittance else.
   [[nodiscard]] Spectrum<N> transmittance(const Ray& ray, Counters& counters, Counter kind) const;
+  /// The same between a surface point and a light sample taken from it.
+  [[nodiscard]] Spectrum<N> visibility(const SurfacePoint& from, const LightSample<N>& light,
+                                       Counters& counters, Counter kind) const;
 
  private:
   const RayQuery* query_;

@@ -1,0 +1,162 @@
+#include <numbers>
+
+#include "material/bsdf.h"
+#include "material/fresnel.h"
+
+namespace atrium::material {
+namespace {
+
+double normal_reflectance(double n, double k) {
+  return ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
+}
+
+// F(0) of an interface as a spectral quantity of its own, exact before any averaging.
+SpectralValue normal_reflectance(const Material& m) {
+  if (is_sampled(m.n) || is_sampled(m.kappa)) {
+    const auto at = [](const SpectralValue& v, double nm) {
+      if (const auto* s = std::get_if<SampledSpectrum>(&v)) return s->at(nm);
+      if (const auto* c = std::get_if<double>(&v)) return *c;
+      return static_cast<double>(luminance(std::get<Rgb>(v)));
+    };
+    std::vector<double> nm, f;
+    for (double w = 360.0; w <= 830.0; w += 5.0) {
+      const double n = at(m.n, w);
+      nm.push_back(w);
+      f.push_back(normal_reflectance(n, n * at(m.kappa, w)));
+    }
+    return make_sampled_spectrum(std::move(nm), std::move(f));
+  }
+  if (const auto* n = std::get_if<double>(&m.n), *kappa = std::get_if<double>(&m.kappa); n && kappa)
+    return normal_reflectance(*n, *n * *kappa);
+  const auto lane = [](const SpectralValue& v, int i) {
+    const auto* c = std::get_if<Rgb>(&v);
+    return c != nullptr ? static_cast<double>((*c)[i]) : std::get<double>(v);
+  };
+  Rgb f;
+  for (int i = 0; i < 3; ++i) {
+    const double n = lane(m.n, i);
+    f[i] = static_cast<float>(normal_reflectance(n, n * lane(m.kappa, i)));
+  }
+  return f;
+}
+
+bool native(const SpectralValue& v, SpectralBasis::Kind kind) {
+  if (std::holds_alternative<double>(v)) return true;
+  return std::holds_alternative<Rgb>(v) ? kind == SpectralBasis::Kind::Rgb
+                                        : kind == SpectralBasis::Kind::Bands;
+}
+
+// n and k per lane. Where the basis mixes wavelengths, averaged n and k would give a wrong colour
+// (gold, copper): the lane keeps the averaged F(0), and k follows from it and the averaged n.
+template <int N>
+void resolve_index(ResolvedMaterial<N>& r, const Material& m, const SpectralBasis& basis) {
+  r.n = basis.template resolve_at_wavelength<N>(m.n);
+  r.k = r.n * basis.template resolve_at_wavelength<N>(m.kappa);
+  if (!native(m.n, basis.kind()) || !native(m.kappa, basis.kind())) {
+    const Spectrum<N> f0 = basis.template resolve<N>(normal_reflectance(m));
+    for (int i = 0; i < N; ++i) {
+      const float f = std::min(std::max(f0[i], 0.0f), 0.9999f);
+      const float n = std::max(r.n[i], 1e-3f);
+      const float k2 = (f * (n + 1.0f) * (n + 1.0f) - (n - 1.0f) * (n - 1.0f)) / (1.0f - f);
+      r.n[i] = n;
+      if (k2 >= 0.0f && r.k[i] > 0.0f) {
+        r.k[i] = std::sqrt(k2);
+      } else {
+        r.k[i] = 0.0f;
+        r.n[i] = (1.0f + std::sqrt(f)) / (1.0f - std::sqrt(f));
+      }
+    }
+  }
+  r.n_mean = r.n.mean();
+  for (int i = 0; i < N; ++i) {
+    const float n = r.n[i], k = r.k[i];
+    r.reflectance_zero[i] = ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
+  }
+}
+
+// Directional albedo of the interface, mirror part included, by a fixed low-discrepancy rule.
+template <int N>
+Spectrum<N> interface_albedo(const Bsdf<N>& interface, float mu) {
+  const Vec3f wo(std::sqrt(std::max(0.0f, 1.0f - mu * mu)), 0.0f, mu);
+  constexpr int kSamples = 256;
+  Spectrum<N> sum;
+  for (int i = 0; i < kSamples; ++i) {
+    // R2 sequence (Roberts 2018): an even cover of the unit square.
+    const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
+    const Vec2f u(fraction(0.5 + 0.7548776662466927 * (i + 1)),
+                  fraction(0.5 + 0.5698402909980532 * (i + 1)));
+    const float choice = (static_cast<float>(i) + 0.5f) / kSamples;
+    if (const auto s = interface.sample(wo, choice, u, kSpecularEvents, Transport::Flux))
+      sum += s->weight;
+  }
+  return sum / static_cast<float>(kSamples);
+}
+
+template <int N>
+std::shared_ptr<const CoupledBody<N>> tabulate_body(const ResolvedMaterial<N>& r) {
+  ResolvedMaterial<N> interface = r;
+  interface.body_reflectance = interface.body_transmittance = Spectrum<N>::zero();
+  interface.coupled.reset();
+  const Bsdf<N> bsdf(interface, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f);
+  auto body = std::make_shared<CoupledBody<N>>();
+  constexpr int steps = CoupledBody<N>::kSteps;
+  const bool smooth = !r.facets;
+  for (int i = 0; i <= steps; ++i) {
+    const float mu = std::max(static_cast<float>(i) / steps, 1e-3f);
+    const Spectrum<N> albedo =
+        smooth ? bsdf.albedo({std::sqrt(1.0f - mu * mu), 0.0f, mu}, kSpecularEvents)
+               : interface_albedo(bsdf, mu);
+    for (int k = 0; k < N; ++k)
+      body->transmitted[static_cast<std::size_t>(i)][k] = std::max(0.0f, 1.0f - albedo[k]);
+  }
+  // B-bar = 2 * integral of B mu dmu, exactly for the piecewise linear table.
+  for (int i = 0; i < steps; ++i) {
+    const float a = static_cast<float>(i) / steps, h = 1.0f / steps;
+    const Spectrum<N>&b0 = body->transmitted[static_cast<std::size_t>(i)],
+          &b1 = body->transmitted[static_cast<std::size_t>(i) + 1];
+    body->mean += 2.0f * h * ((0.5f * a + h / 6.0f) * b0 + (0.5f * a + h / 3.0f) * b1);
+  }
+  return body;
+}
+
+}  // namespace
+
+template <int N>
+ResolvedMaterial<N> resolve_material(const Material& m, const SpectralBasis& basis) {
+  ResolvedMaterial<N> r;
+  r.source = &m;
+  r.traits = traits(m);
+  resolve_index(r, m, basis);
+  const bool coupled = m.combination == Material::Combination::Coupled;
+  if (m.body_reflectance)
+    r.body_reflectance = basis.template resolve<N>(*m.body_reflectance);
+  else if (!coupled)
+    r.body_reflectance = r.reflectance_zero;
+  if (m.body_transmittance)
+    r.body_transmittance = basis.template resolve<N>(*m.body_transmittance);
+  else if (m.k_tp_df > 0.0)
+    r.body_transmittance = r.reflectance_zero;
+  r.transmission_tint = basis.template resolve<N>(m.transmission_tint);
+  r.extinction = basis.template resolve_at_wavelength<N>(m.extinction);
+  r.emission = m.emission_spectral_watts ? basis.template resolve_emission<N>(m.emission)
+                                         : basis.template resolve<N>(m.emission);
+  r.pane_kd = r.extinction * static_cast<float>(m.pane_thickness);
+  if (!m.smooth() && m.medium != Material::Medium::Pane && (m.k_rg > 0.0 || m.k_tp_rg > 0.0))
+    r.facets.emplace(m.c);
+  if (m.sigma) {
+    for (int i = 0; i < N; ++i) {
+      const double x = 4.0 * std::numbers::pi * *m.sigma /
+                       (basis.wavelengths_nm()[static_cast<std::size_t>(i)] * 1e-9);
+      r.coherent_g[i] = static_cast<float>(std::min(x * x, 1e30));
+    }
+  }
+  if (coupled && r.body_reflectance.max() > 0.0f && m.k_rg > 0.0) r.coupled = tabulate_body(r);
+  return r;
+}
+
+template ResolvedMaterial<1> resolve_material<1>(const Material&, const SpectralBasis&);
+template ResolvedMaterial<3> resolve_material<3>(const Material&, const SpectralBasis&);
+template ResolvedMaterial<4> resolve_material<4>(const Material&, const SpectralBasis&);
+template ResolvedMaterial<8> resolve_material<8>(const Material&, const SpectralBasis&);
+
+}  // namespace atrium::material

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "material/frame.h"
+
+namespace atrium::scene {
+
+/// Where a light is, how strong it is and which way it faces.
+struct LightBounds {
+  Eigen::AlignedBox3f box;
+  Vec3f axis = Vec3f::UnitZ();
+  float power = 0.0f;
+  float cos_spread = -1.0f;   ///< half angle of the cone of emitter normals around the axis
+  float cos_emission = 0.0f;  ///< emission reaches this far beyond a normal
+  bool two_sided = false;
+};
+
+/// Bounding hierarchy that picks one of many finite lights with a probability that follows what it
+/// may contribute at a point. Source: Conty Estevez & Kulla 2018, Importance Sampling of Many
+/// Lights.
+class LightTree {
+ public:
+  LightTree() = default;
+  explicit LightTree(std::vector<LightBounds> lights);
+
+  struct Choice {
+    std::uint32_t light;
+    float probability;
+  };
+  /// \param normal  of the receiver or zero. nullopt: no light can reach the point.
+  [[nodiscard]] std::optional<Choice> choose(const Vec3f& p, const Vec3f& normal, float u) const;
+  /// Probability that choose() picks this light.
+  [[nodiscard]] float probability(const Vec3f& p, const Vec3f& normal, std::uint32_t light) const;
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+
+ private:
+  struct Node {
+    LightBounds bounds;
+    std::uint32_t parent = 0;
+    std::uint32_t left = 0, right = 0;  // children; left == 0: leaf
+    std::uint32_t light = 0;
+  };
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> leaf_of_light_;
+};
+
+}  // namespace atrium::scene
