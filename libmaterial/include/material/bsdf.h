@@ -129,6 +129,8 @@ class Bsdf {
   /// Estimate of the directional albedo of some events (choice of lobes, denoising guides).
   [[nodiscard]] Spectrum<N> albedo(const Vec3f& wo, std::uint32_t events) const;
 
+  /// Index behind the surface relative to the viewer's side (mean over lanes).
+  [[nodiscard]] float eta() const { return eta_mean_; }
   /// K of the body behind (front) or on this side (back) of a solid [1/m].
   [[nodiscard]] const Spectrum<N>& extinction() const { return extinction_; }
 

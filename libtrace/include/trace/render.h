@@ -36,12 +36,11 @@ struct RenderOptions {
   int width = 640;
   int height = 480;
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1 as shares of the image
-  int samples = 64;        ///< camera samples per pixel (upper bound where an error is asked for)
-  double error = 0.0;      ///< asked standard error per pixel (relative, see error_measure.h); 0: none
-  double time_limit = 0.0; ///< [s]; 0: none
+  int samples = 64;        ///< camera samples per pixel
+  double time_limit = 0.0; ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
-  int max_specular_depth = 32;  ///< mirror and glass events of one path (hybrid, paper)
-  bool components = false;      ///< layers C1..C6
+  int max_specular_depth = 64;  ///< mirror and glass events of one path (hybrid, paper)
+  bool components = false;      ///< layers C1..C6 and emission
 };
 
 struct RenderResult {
@@ -50,7 +49,7 @@ struct RenderResult {
   scene::Image image;
   scene::Counters counters;
   int samples_done = 0;        ///< per pixel, smallest
-  double error_estimate = 0.0; ///< RMS over pixels of the relative standard error
+  double error_estimate = 0.0; ///< RMS of stderr.* over pixels, relative to the mean of the image
   bool complete = true;        ///< false: stopped by time or request
 };
 

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "pixel_sample.h"
+#include "scene/camera.h"
+#include "scene/sampler.h"
+#include "scene/shading.h"
+#include "trace/render.h"
+
+namespace atrium::trace {
+
+/// Everything an integrator reads; one per rendering, shared by all threads.
+template <int N>
+struct View {
+  const scene::Shading<N>& shading;
+  const scene::SurfaceField& field;
+  const RenderOptions& options;
+};
+
+/// Unbiased path tracing with next event estimation and multiple importance sampling.
+template <int N>
+[[nodiscard]] PixelSample<N> trace_path(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
+                                        scene::Counters& counters);
+/// Direct light and specular paths; diffuse inter-reflection from the field (Method::Hybrid) or
+/// not at all (Method::Direct).
+template <int N>
+[[nodiscard]] PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
+                                          scene::Counters& counters);
+/// The paper's equation, literally.
+template <int N>
+[[nodiscard]] PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
+                                         scene::Counters& counters);
+
+/// Weight of a sample of density a where another strategy has density b (power heuristic, Veach 1997).
+[[nodiscard]] inline float mis_weight(float a, float b) {
+  if (!(a < 1e18f)) return 1.0f;  // a Dirac sample has no rival
+  return a > 0.0f ? a * a / (a * a + b * b) : 0.0f;
+}
+
+/// The last surface that scattered a path with a finite density: emission that the path then meets
+/// was also reachable by sampling a light from there.
+struct ScatterVertex {
+  bool present = false;  ///< false: camera or Dirac event, emission counts in full
+  Vec3f position;
+  Vec3f normal;          ///< as given to the light sampler
+  float pdf = 0.0f;      ///< [1/sr] of the direction taken
+};
+
+/// Normal for LightSampler::sample: zero where lights behind the surface matter too.
+template <int N>
+[[nodiscard]] Vec3f light_normal(const scene::Interaction<N>& surface) {
+  using namespace material;
+  return surface.bsdf.has(kDiffuseTransmission | kLobeTransmission) ? Vec3f(Vec3f::Zero()) : surface.ng;
+}
+
+/// Share of emission met after a vertex that belongs to scattering (the rest to light sampling).
+template <int N>
+[[nodiscard]] float emission_weight(const scene::Shading<N>& shading, const ScatterVertex& v,
+                                    const scene::SurfacePoint& hit) {
+  if (!v.present) return 1.0f;
+  const float distance = (hit.position - v.position).norm();
+  return mis_weight(v.pdf, shading.lights().pdf(v.position, v.normal, hit, distance));
+}
+template <int N>
+[[nodiscard]] float environment_weight(const scene::Shading<N>& shading, const ScatterVertex& v,
+                                       const Vec3f& direction) {
+  if (!v.present) return 1.0f;
+  return mis_weight(v.pdf, shading.lights().pdf_environment(v.position, v.normal, direction));
+}
+
+/// Transmittance of the segment that ends at this surface: a solid that is hit from the inside.
+template <int N>
+[[nodiscard]] Spectrum<N> segment_transmittance(const scene::Shading<N>& shading,
+                                                const scene::Interaction<N>& surface, float distance) {
+  const material::Material& m = *shading.material(surface.point.material).source;
+  if (surface.side == scene::Side::Front || m.medium != material::Material::Medium::Solid ||
+      surface.bsdf.extinction().is_zero())
+    return Spectrum<N>::one();
+  return exp_minus(surface.bsdf.extinction(), distance);
+}
+
+}  // namespace atrium::trace

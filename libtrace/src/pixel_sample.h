@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "material/bsdf.h"
+#include "material/frame.h"
+#include "material/spectrum.h"
+
+namespace atrium::trace {
+
+/// The terms of the paper, named by what the first visible surface does with the light.
+enum class Term : std::size_t {
+  DirectReflection,    ///< C1: lights in front, body and highlight
+  IndirectReflection,  ///< C2: all other light in front, by the body
+  SpecularReflection,  ///< C3
+  SpecularTransmission,///< C4
+  DirectTransmission,  ///< C5: lights behind
+  IndirectTransmission,///< C6: all other light behind, by the body
+  Emission,            ///< the surface itself, or the environment behind everything
+};
+inline constexpr std::size_t kTerms = 7;
+
+/// What one camera ray brings: radiance by term, and what the first surface looked like.
+template <int N>
+struct PixelSample {
+  std::array<Spectrum<N>, kTerms> term{};
+  Spectrum<N> albedo;
+  Spectrum<N> irradiance;
+  Vec3f normal = Vec3f::Zero();
+  float depth = 0.0f;  ///< [m] along the ray; 0: nothing hit
+
+  Spectrum<N>& operator[](Term t) { return term[static_cast<std::size_t>(t)]; }
+  [[nodiscard]] Spectrum<N> sum() const {
+    Spectrum<N> s;
+    for (const Spectrum<N>& t : term) s += t;
+    return s;
+  }
+};
+
+/// Term that light belongs to which reaches the first surface by this event, straight from a light
+/// or by a longer path.
+[[nodiscard]] inline Term term_of(material::Event event, bool straight_from_light) {
+  using namespace material;
+  switch (event) {
+    case kDiffuseReflection: return straight_from_light ? Term::DirectReflection : Term::IndirectReflection;
+    case kDiffuseTransmission: return straight_from_light ? Term::DirectTransmission : Term::IndirectTransmission;
+    case kLobeReflection: return straight_from_light ? Term::DirectReflection : Term::SpecularReflection;
+    case kLobeTransmission: return straight_from_light ? Term::DirectTransmission : Term::SpecularTransmission;
+    case kMirror:
+    case kPaneReflection: return Term::SpecularReflection;
+    default: return Term::SpecularTransmission;
+  }
+}
+
+}  // namespace atrium::trace
