@@ -1,7 +1,10 @@
 #include "trace/render.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cmath>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -55,6 +58,21 @@ void render_tile(const View<N>& view, const scene::Camera& camera, const PixelWi
     }
 }
 
+// Workers report through one of them at a time; the others go on.
+class SerialProgress {
+ public:
+  void report(const scene::Control& control, double fraction) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock.owns_lock() || fraction < last_ + 0.002) return;
+    last_ = fraction;
+    control.report("render", fraction);
+  }
+
+ private:
+  std::mutex mutex_;
+  double last_ = 0.0;
+};
+
 template <int N>
 RenderResult render_lanes(const scene::RayQuery& query, const material::SpectralBasis& basis,
                           const scene::Camera& camera, const scene::SurfaceField& field, const RenderOptions& options,
@@ -70,18 +88,26 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
 
   // Passes of doubling size: a picture of the whole view early, few synchronisations later.
   RenderResult result;
+  SerialProgress progress;
   while (result.samples_done < options.samples && result.complete) {
     const int first = result.samples_done;
     const int last = std::min(options.samples, first + std::clamp(first, 1, 16));
+    std::atomic<std::size_t> tiles_done = 0;
+    std::atomic<bool> stopped = false;
     scene::parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t)
+      for (std::size_t t = begin; t < end; ++t) {
+        // Every pixel gets its first sample; after that a request ends the pass where it is.
+        const bool late = options.time_limit > 0.0 && elapsed() > options.time_limit;
+        if (first > 0 && (late || control.stop_requested())) {
+          stopped = true;
+          continue;
+        }
         render_tile(view, camera, window, tiles[t], first, last, film, counters[t]);
+        progress.report(control, (first + (last - first) * static_cast<double>(++tiles_done) / static_cast<double>(tiles.size())) / options.samples);
+      }
     });
-    result.samples_done = last;
-    control.report("render", static_cast<double>(last) / options.samples,
-                   std::to_string(last) + " of " + std::to_string(options.samples) + " samples per pixel");
-    const bool late = options.time_limit > 0.0 && elapsed() > options.time_limit;
-    result.complete = last == options.samples || !(late || control.stop_requested());
+    result.complete = !stopped;
+    if (!stopped) result.samples_done = last;
   }
   for (const scene::Counters& c : counters) result.counters += c;
   result.image = film.image();
