@@ -19,7 +19,8 @@ Film::Film(int width, int height, bool components) : width_(width), height_(heig
 template <int N>
 void Film::add(int x, int y, const PixelSample<N>& sample, const material::SpectralBasis& basis,
                scene::Counters& counters) {
-  const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  const std::size_t i =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   const Spectrum<N> radiance = sample.sum();
   ++counters[scene::Counter::Samples];
   if (!radiance.is_finite()) {
@@ -37,7 +38,8 @@ void Film::add(int x, int y, const PixelSample<N>& sample, const material::Spect
   }
   const auto n = static_cast<float>(p.count);
   if (!terms_.empty())
-    for (std::size_t t = 0; t < kTerms; ++t) move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
+    for (std::size_t t = 0; t < kTerms; ++t)
+      move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
   move_mean(p.albedo, basis.to_rgb(sample.albedo), n);
   move_mean(p.irradiance, basis.to_rgb(sample.irradiance), n);
   p.normal += (sample.normal - p.normal) / n;
@@ -47,19 +49,24 @@ void Film::add(int x, int y, const PixelSample<N>& sample, const material::Spect
   }
 }
 
-template void Film::add<1>(int, int, const PixelSample<1>&, const material::SpectralBasis&, scene::Counters&);
-template void Film::add<3>(int, int, const PixelSample<3>&, const material::SpectralBasis&, scene::Counters&);
-template void Film::add<4>(int, int, const PixelSample<4>&, const material::SpectralBasis&, scene::Counters&);
-template void Film::add<8>(int, int, const PixelSample<8>&, const material::SpectralBasis&, scene::Counters&);
+template void Film::add<1>(int, int, const PixelSample<1>&, const material::SpectralBasis&,
+                           scene::Counters&);
+template void Film::add<3>(int, int, const PixelSample<3>&, const material::SpectralBasis&,
+                           scene::Counters&);
+template void Film::add<4>(int, int, const PixelSample<4>&, const material::SpectralBasis&,
+                           scene::Counters&);
+template void Film::add<8>(int, int, const PixelSample<8>&, const material::SpectralBasis&,
+                           scene::Counters&);
 
 scene::Image Film::image() const {
   static constexpr const char* kRgb[3] = {"R", "G", "B"};
   static constexpr const char* kXyz[3] = {"X", "Y", "Z"};
-  static constexpr const char* kTermNames[kTerms] = {"C1", "C2", "C3", "C4", "C5", "C6", "emission"};
+  static constexpr const char* kTermNames[kTerms] = {"C1", "C2", "C3",      "C4",
+                                                     "C5", "C6", "emission"};
   scene::Image image;
   image.width = width_;
   image.height = height_;
-  const auto name = [&](const std::string& layer, const char* const (&parts)[3]) {
+  const auto name = [&](const std::string& layer, const char* const(&parts)[3]) {
     for (const char* part : parts) image.channels.push_back(layer + "." + part);
   };
   for (const char* c : kRgb) image.channels.emplace_back(c);
@@ -72,7 +79,9 @@ scene::Image Film::image() const {
     for (const char* t : kTermNames) name(t, kRgb);
 
   image.pixels.reserve(pixels_.size() * image.channels.size());
-  const auto put = [&](const Rgb& c) { image.pixels.insert(image.pixels.end(), c.lane.begin(), c.lane.end()); };
+  const auto put = [&](const Rgb& c) {
+    image.pixels.insert(image.pixels.end(), c.lane.begin(), c.lane.end());
+  };
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Pixel& p = pixels_[i];
     Rgb error;
@@ -85,7 +94,8 @@ scene::Image Film::image() const {
     put(error);
     put(p.albedo);
     put(p.irradiance);
-    put(make_rgb(static_cast<double>(p.normal.x()), static_cast<double>(p.normal.y()), static_cast<double>(p.normal.z())));
+    put(make_rgb(static_cast<double>(p.normal.x()), static_cast<double>(p.normal.y()),
+                 static_cast<double>(p.normal.z())));
     image.pixels.push_back(p.depth);
     if (!terms_.empty())
       for (const Rgb& t : terms_[i]) put(t);

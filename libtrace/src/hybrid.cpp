@@ -22,8 +22,8 @@ struct Parts {
 };
 
 template <int N>
-Spectrum<N> stored(const SurfaceField& field, const SurfaceField::Quantities& q, const SurfaceField::Stencil& s,
-                   Side side, Parts parts) {
+Spectrum<N> stored(const SurfaceField& field, const SurfaceField::Quantities& q,
+                   const SurfaceField::Stencil& s, Side side, Parts parts) {
   Spectrum<N> e;
   if (parts.direct) e += field.interpolate<N>(q.direct, s, side);
   if (parts.caustic) e += field.interpolate<N>(q.caustic, s, side);
@@ -38,8 +38,8 @@ struct FieldRadiance {
   Spectrum<N> reflected, transmitted;
 };
 template <int N>
-FieldRadiance<N> field_radiance(const View<N>& view, const scene::Interaction<N>& surface, const Vec3f& wo,
-                                Parts parts) {
+FieldRadiance<N> field_radiance(const View<N>& view, const scene::Interaction<N>& surface,
+                                const Vec3f& wo, Parts parts) {
   FieldRadiance<N> r;
   if (view.field.empty() || !surface.bsdf.has(kDiffuseEvents)) return r;
   const scene::SurfacePoint& p = surface.point;
@@ -52,31 +52,37 @@ FieldRadiance<N> field_radiance(const View<N>& view, const scene::Interaction<N>
     r.reflected = surface.bsdf.diffuse_reflectance(wo) * irradiance(surface.side, q) * kInvPi;
   }
   if (surface.bsdf.has(kDiffuseTransmission))
-    r.transmitted = surface.bsdf.diffuse_transmittance() * irradiance(other(surface.side), view.field.irradiance) * kInvPi;
+    r.transmitted = surface.bsdf.diffuse_transmittance() *
+                    irradiance(other(surface.side), view.field.irradiance) * kInvPi;
   return r;
 }
 
 /// Light sources as seen from a point. Body and lobe have different rivals among the sampled
-/// directions: gather rays for the body, specular rays for the lobe.
+/// directions: gather rays for the body (if there are any), specular rays for the lobe.
 template <int N>
 struct DirectLight {
   Spectrum<N> reflected, transmitted;
 };
+enum class Lobes { Counted, LeftToCaustics };
 template <int N>
-DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& surface, const Vec3f& wo,
-                            bool gathers, scene::Sampler& sampler, scene::Counters& counters) {
+DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& surface,
+                            const Vec3f& wo, bool gathers, Lobes lobes, scene::Sampler& sampler,
+                            scene::Counters& counters) {
   DirectLight<N> d;
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
   if (!surface.bsdf.has(kDiffuseEvents | kLobeEvents)) return d;
-  const auto light = view.shading.lights().sample(surface.point.position, light_normal(surface), u_choice, u);
+  const auto light =
+      view.shading.lights().sample(surface.point.position, light_normal(surface), u_choice, u);
   if (!light) return d;
   const Vec3f wi = surface.to_local(light->wi);
   if ((wi.z() > 0.0f) != (light->wi.dot(surface.ng) > 0.0f)) return d;
   BsdfValue<N> f = surface.bsdf.eval(wo, wi);
+  if (lobes == Lobes::LeftToCaustics) f.lobe = Spectrum<N>::zero();
   if (!light->dirac) {
     if (gathers) f.diffuse *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi, kDiffuseEvents));
-    if (!f.lobe.is_zero()) f.lobe *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi, kSpecularEvents));
+    if (!f.lobe.is_zero())
+      f.lobe *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi, kSpecularEvents));
   }
   const Spectrum<N> contribution = f.sum() * light->radiance * (std::abs(wi.z()) / light->pdf);
   if (contribution.is_zero()) return d;
@@ -87,8 +93,9 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
 
 /// A specular step of a path: direction, throughput and the vertex for emission beyond it.
 template <int N>
-bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth, scene::Ray& ray,
-                   Spectrum<N>& beta, ScatterVertex& vertex, Event& event, scene::Sampler& sampler) {
+bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth,
+                   scene::Ray& ray, Spectrum<N>& beta, ScatterVertex& vertex, Event& event,
+                   scene::Sampler& sampler) {
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
   const auto s = surface.bsdf.sample(wo, u_choice, u, kSpecularEvents);
@@ -149,8 +156,16 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
       const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
       if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
     }
-    const FieldRadiance<N> r = field_radiance(view, surface, wo, {true, true, true});
+    // Closer than an element, its mean direct light is too coarse: look at the lights again.
+    const bool close = depth == 0 && surface.bsdf.has(kDiffuseEvents) &&
+                       distance < view.field.cell_size(shading.scene(), hit->object, hit->triangle);
+    const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
     g.indirect += beta * (r.reflected + r.transmitted);
+    if (close) {
+      const DirectLight<N> d =
+          direct_light(view, surface, wo, false, Lobes::LeftToCaustics, sampler, counters);
+      g.indirect += beta * (d.reflected + d.transmitted);
+    }
     Event event{};
     if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
     straight &= event == kPaneStraight;
@@ -162,8 +177,8 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
 }  // namespace
 
 template <int N>
-PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, scene::Sampler& sampler,
-                            scene::Counters& counters) {
+PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
+                            scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   const bool has_field = view.options.method == Method::Hybrid && !view.field.empty();
   const bool gathers = has_field && view.options.indirect == Indirect::Gather;
@@ -172,9 +187,9 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, s
   ScatterVertex vertex;
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
-  Event first{};                 // what the first surface did
-  Event last{};                  // what the previous one did
-  int scattered = 0;             // specular events, straight panes apart
+  Event first{};      // what the first surface did
+  Event last{};       // what the previous one did
+  int scattered = 0;  // specular events, straight panes apart
 
   // Light that arrives along the specular chain belongs to the term of its first event.
   const auto add = [&](int depth, Term here, const Spectrum<N>& radiance) {
@@ -190,7 +205,8 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, s
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
       const Spectrum<N> sky = shading.lights().environment(ray.direction);
-      if (!sky.is_zero()) add_emission(depth, sky * environment_weight(shading, vertex, ray.direction));
+      if (!sky.is_zero())
+        add_emission(depth, sky * environment_weight(shading, vertex, ray.direction));
       break;
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
@@ -201,14 +217,17 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, s
       out.normal = surface.frame.z;
       out.albedo = surface.bsdf.albedo(wo, kAllEvents);
       if (has_field) {
-        const auto s = view.field.stencil(shading.scene(), hit->object, hit->triangle, hit->position, surface.side);
-        out.irradiance = stored<N>(view.field, view.field.irradiance, s, surface.side, {true, true, true});
+        const auto s = view.field.stencil(shading.scene(), hit->object, hit->triangle,
+                                          hit->position, surface.side);
+        out.irradiance =
+            stored<N>(view.field, view.field.irradiance, s, surface.side, {true, true, true});
       }
     }
     const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
     if (!emitted.is_zero()) add_emission(depth, emitted * emission_weight(shading, vertex, *hit));
 
-    const DirectLight<N> direct = direct_light(view, surface, wo, gathers, sampler, counters);
+    const DirectLight<N> direct =
+        direct_light(view, surface, wo, gathers, Lobes::Counted, sampler, counters);
     add(depth, Term::DirectReflection, direct.reflected);
     add(depth, Term::DirectTransmission, direct.transmitted);
     if (has_field && surface.bsdf.has(kDiffuseEvents)) {
@@ -229,9 +248,13 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, s
   return out;
 }
 
-template PixelSample<1> trace_hybrid<1>(const View<1>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
-template PixelSample<3> trace_hybrid<3>(const View<3>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
-template PixelSample<4> trace_hybrid<4>(const View<4>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
-template PixelSample<8> trace_hybrid<8>(const View<8>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
+template PixelSample<1> trace_hybrid<1>(const View<1>&, const scene::Ray&, scene::Sampler&,
+                                        scene::Counters&);
+template PixelSample<3> trace_hybrid<3>(const View<3>&, const scene::Ray&, scene::Sampler&,
+                                        scene::Counters&);
+template PixelSample<4> trace_hybrid<4>(const View<4>&, const scene::Ray&, scene::Sampler&,
+                                        scene::Counters&);
+template PixelSample<8> trace_hybrid<8>(const View<8>&, const scene::Ray&, scene::Sampler&,
+                                        scene::Counters&);
 
 }  // namespace atrium::trace

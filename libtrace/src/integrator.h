@@ -18,19 +18,20 @@ struct View {
 
 /// Unbiased path tracing with next event estimation and multiple importance sampling.
 template <int N>
-[[nodiscard]] PixelSample<N> trace_path(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
-                                        scene::Counters& counters);
+[[nodiscard]] PixelSample<N> trace_path(const View<N>& view, const scene::Ray& ray,
+                                        scene::Sampler& sampler, scene::Counters& counters);
 /// Direct light and specular paths; diffuse inter-reflection from the field (Method::Hybrid) or
 /// not at all (Method::Direct).
 template <int N>
-[[nodiscard]] PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
-                                          scene::Counters& counters);
+[[nodiscard]] PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& ray,
+                                          scene::Sampler& sampler, scene::Counters& counters);
 /// The paper's equation, literally.
 template <int N>
-[[nodiscard]] PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
-                                         scene::Counters& counters);
+[[nodiscard]] PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& ray,
+                                         scene::Sampler& sampler, scene::Counters& counters);
 
-/// Weight of a sample of density a where another strategy has density b (power heuristic, Veach 1997).
+/// Weight of a sample of density a where another strategy has density b (power heuristic, Veach
+/// 1997).
 [[nodiscard]] inline float mis_weight(float a, float b) {
   if (!(a < 1e18f)) return 1.0f;  // a Dirac sample has no rival
   return a > 0.0f ? a * a / (a * a + b * b) : 0.0f;
@@ -41,15 +42,16 @@ template <int N>
 struct ScatterVertex {
   bool present = false;  ///< false: camera or Dirac event, emission counts in full
   Vec3f position;
-  Vec3f normal;          ///< as given to the light sampler
-  float pdf = 0.0f;      ///< [1/sr] of the direction taken
+  Vec3f normal;      ///< as given to the light sampler
+  float pdf = 0.0f;  ///< [1/sr] of the direction taken
 };
 
 /// Normal for LightSampler::sample: zero where lights behind the surface matter too.
 template <int N>
 [[nodiscard]] Vec3f light_normal(const scene::Interaction<N>& surface) {
   using namespace material;
-  return surface.bsdf.has(kDiffuseTransmission | kLobeTransmission) ? Vec3f(Vec3f::Zero()) : surface.ng;
+  return surface.bsdf.has(kDiffuseTransmission | kLobeTransmission) ? Vec3f(Vec3f::Zero())
+                                                                    : surface.ng;
 }
 
 /// Share of emission met after a vertex that belongs to scattering (the rest to light sampling).
@@ -70,7 +72,8 @@ template <int N>
 /// Transmittance of the segment that ends at this surface: a solid that is hit from the inside.
 template <int N>
 [[nodiscard]] Spectrum<N> segment_transmittance(const scene::Shading<N>& shading,
-                                                const scene::Interaction<N>& surface, float distance) {
+                                                const scene::Interaction<N>& surface,
+                                                float distance) {
   const material::Material& m = *shading.material(surface.point.material).source;
   if (surface.side == scene::Side::Front || m.medium != material::Material::Medium::Solid ||
       surface.bsdf.extinction().is_zero())

@@ -45,7 +45,8 @@ void sample_light(const View<N>& view, const scene::Interaction<N>& surface, con
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
   if (!surface.bsdf.has(kDiffuseEvents | kLobeEvents)) return;
-  const auto light = view.shading.lights().sample(surface.point.position, light_normal(surface), u_choice, u);
+  const auto light =
+      view.shading.lights().sample(surface.point.position, light_normal(surface), u_choice, u);
   if (!light) return;
   const Vec3f wi = surface.to_local(light->wi);
   if ((wi.z() > 0.0f) != (light->wi.dot(surface.ng) > 0.0f)) return;
@@ -54,15 +55,17 @@ void sample_light(const View<N>& view, const scene::Interaction<N>& surface, con
   if (contribution.is_zero()) return;
   contribution *= view.shading.visibility(surface.point, *light, counters, Counter::RaysShadow);
   if (!light->dirac) contribution *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi));
-  if (attribution.decided) attribution.add(out, contribution, false);
-  else out[wi.z() > 0.0f ? Term::DirectReflection : Term::DirectTransmission] += contribution;
+  if (attribution.decided)
+    attribution.add(out, contribution, false);
+  else
+    out[wi.z() > 0.0f ? Term::DirectReflection : Term::DirectTransmission] += contribution;
 }
 
 }  // namespace
 
 template <int N>
-PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray, scene::Sampler& sampler,
-                          scene::Counters& counters) {
+PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
+                          scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   PixelSample<N> out;
   Attribution<N> attribution;
@@ -70,8 +73,8 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray, sce
   Spectrum<N> beta = Spectrum<N>::one();
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
-  float eta_scale = 1.0f;      // undoes the (n1/n2)^2 of radiance inside a solid, for roulette
-  int scattered = 0;           // events after the first surface, straight panes apart
+  float eta_scale = 1.0f;  // undoes the (n1/n2)^2 of radiance inside a solid, for roulette
+  int scattered = 0;       // events after the first surface, straight panes apart
 
   for (int depth = 0;; ++depth) {
     float distance = 0.0f;
@@ -79,7 +82,8 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray, sce
     if (!hit) {
       const Spectrum<N> sky = shading.lights().environment(ray.direction);
       if (!sky.is_zero())
-        attribution.add(out, beta * sky * environment_weight(shading, vertex, ray.direction), scattered == 1);
+        attribution.add(out, beta * sky * environment_weight(shading, vertex, ray.direction),
+                        scattered == 1);
       break;
     }
     const Vec3f wo_world = -ray.direction;
@@ -102,14 +106,16 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray, sce
     const auto s = surface.bsdf.sample(wo, u_choice, u);
     if (!s) break;
     const Vec3f wi = surface.to_world(s->wi);
-    if ((s->wi.z() > 0.0f) != (wi.dot(surface.ng) > 0.0f)) break;  // shading normal against the surface
+    if ((s->wi.z() > 0.0f) != (wi.dot(surface.ng) > 0.0f))
+      break;  // shading normal against the surface
     if (!attribution.decided) {
       attribution.decided = true;
       attribution.event = s->event;
       if (!s->dirac()) attribution.body_share = share_of_body(surface.bsdf.eval(wo, s->wi));
     }
     beta *= s->weight;
-    if ((s->event & (kRefraction | kLobeTransmission)) != 0) eta_scale *= surface.bsdf.eta() * surface.bsdf.eta();
+    if ((s->event & (kRefraction | kLobeTransmission)) != 0)
+      eta_scale *= surface.bsdf.eta() * surface.bsdf.eta();
     if (s->event != kPaneStraight) {
       ++scattered;
       vertex = {!s->dirac(), hit->position, light_normal(surface), s->pdf};
@@ -125,9 +131,13 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray, sce
   return out;
 }
 
-template PixelSample<1> trace_path<1>(const View<1>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
-template PixelSample<3> trace_path<3>(const View<3>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
-template PixelSample<4> trace_path<4>(const View<4>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
-template PixelSample<8> trace_path<8>(const View<8>&, const scene::Ray&, scene::Sampler&, scene::Counters&);
+template PixelSample<1> trace_path<1>(const View<1>&, const scene::Ray&, scene::Sampler&,
+                                      scene::Counters&);
+template PixelSample<3> trace_path<3>(const View<3>&, const scene::Ray&, scene::Sampler&,
+                                      scene::Counters&);
+template PixelSample<4> trace_path<4>(const View<4>&, const scene::Ray&, scene::Sampler&,
+                                      scene::Counters&);
+template PixelSample<8> trace_path<8>(const View<8>&, const scene::Ray&, scene::Sampler&,
+                                      scene::Counters&);
 
 }  // namespace atrium::trace

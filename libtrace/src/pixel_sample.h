@@ -11,13 +11,13 @@ namespace atrium::trace {
 
 /// The terms of the paper, named by what the first visible surface does with the light.
 enum class Term : std::size_t {
-  DirectReflection,    ///< C1: lights in front, body and highlight
-  IndirectReflection,  ///< C2: all other light in front, by the body
-  SpecularReflection,  ///< C3
-  SpecularTransmission,///< C4
-  DirectTransmission,  ///< C5: lights behind
-  IndirectTransmission,///< C6: all other light behind, by the body
-  Emission,            ///< the surface itself, or the environment behind everything
+  DirectReflection,      ///< C1: lights in front, body and highlight
+  IndirectReflection,    ///< C2: all other light in front, by the body
+  SpecularReflection,    ///< C3
+  SpecularTransmission,  ///< C4
+  DirectTransmission,    ///< C5: lights behind
+  IndirectTransmission,  ///< C6: all other light behind, by the body
+  Emission,              ///< the surface itself, or the environment behind everything
 };
 inline constexpr std::size_t kTerms = 7;
 
@@ -43,13 +43,19 @@ struct PixelSample {
 [[nodiscard]] inline Term term_of(material::Event event, bool straight_from_light) {
   using namespace material;
   switch (event) {
-    case kDiffuseReflection: return straight_from_light ? Term::DirectReflection : Term::IndirectReflection;
-    case kDiffuseTransmission: return straight_from_light ? Term::DirectTransmission : Term::IndirectTransmission;
-    case kLobeReflection: return straight_from_light ? Term::DirectReflection : Term::SpecularReflection;
-    case kLobeTransmission: return straight_from_light ? Term::DirectTransmission : Term::SpecularTransmission;
+    case kDiffuseReflection:
+      return straight_from_light ? Term::DirectReflection : Term::IndirectReflection;
+    case kDiffuseTransmission:
+      return straight_from_light ? Term::DirectTransmission : Term::IndirectTransmission;
+    case kLobeReflection:
+      return straight_from_light ? Term::DirectReflection : Term::SpecularReflection;
+    case kLobeTransmission:
+      return straight_from_light ? Term::DirectTransmission : Term::SpecularTransmission;
     case kMirror:
-    case kPaneReflection: return Term::SpecularReflection;
-    default: return Term::SpecularTransmission;
+    case kPaneReflection:
+      return Term::SpecularReflection;
+    default:
+      return Term::SpecularTransmission;
   }
 }
 

@@ -32,28 +32,33 @@ std::vector<Tile> tiles_of(int width, int height) {
 }
 
 template <int N>
-PixelSample<N> trace(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler, scene::Counters& counters) {
+PixelSample<N> trace(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
+                     scene::Counters& counters) {
   if (view.options.mode == Mode::Paper) return trace_paper(view, ray, sampler, counters);
   if (view.options.method == Method::Path) return trace_path(view, ray, sampler, counters);
   return trace_hybrid(view, ray, sampler, counters);
 }
 
 template <int N>
-void render_tile(const View<N>& view, const scene::Camera& camera, const PixelWindow& window, const Tile& tile,
-                 int first_sample, int last_sample, Film& film, scene::Counters& counters) {
+void render_tile(const View<N>& view, const scene::Camera& camera, const PixelWindow& window,
+                 const Tile& tile, int first_sample, int last_sample, Film& film,
+                 scene::Counters& counters) {
   const RenderOptions& o = view.options;
   const double aspect = static_cast<double>(o.width) / static_cast<double>(o.height);
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x) {
       const int px = x + window.x0;  // pixel of the whole image: a crop shows the same samples
       const int py = y + window.y0;
-      const auto stream = static_cast<std::uint32_t>(py) * static_cast<std::uint32_t>(o.width) + static_cast<std::uint32_t>(px);
+      const auto stream = static_cast<std::uint32_t>(py) * static_cast<std::uint32_t>(o.width) +
+                          static_cast<std::uint32_t>(px);
       for (int i = first_sample; i < last_sample; ++i) {
         scene::Sampler sampler(o.seed, stream, static_cast<std::uint32_t>(i));
         const Vec2f jitter = sampler.next_2d();
-        const Vec2d place((px + static_cast<double>(jitter.x())) / o.width, (py + static_cast<double>(jitter.y())) / o.height);
+        const Vec2d place((px + static_cast<double>(jitter.x())) / o.width,
+                          (py + static_cast<double>(jitter.y())) / o.height);
         const scene::Camera::CameraRay r = camera.ray(place, aspect);
-        film.add(x, y, trace(view, {r.origin, r.direction}, sampler, counters), view.shading.basis(), counters);
+        film.add(x, y, trace(view, {r.origin, r.direction}, sampler, counters),
+                 view.shading.basis(), counters);
       }
     }
 }
@@ -75,10 +80,12 @@ class SerialProgress {
 
 template <int N>
 RenderResult render_lanes(const scene::RayQuery& query, const material::SpectralBasis& basis,
-                          const scene::Camera& camera, const scene::SurfaceField& field, const RenderOptions& options,
-                          const scene::Control& control) {
+                          const scene::Camera& camera, const scene::SurfaceField& field,
+                          const RenderOptions& options, const scene::Control& control) {
   const auto start = std::chrono::steady_clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   const scene::Shading<N> shading(query, basis);
   const View<N> view{shading, field, options};
   const PixelWindow window = pixel_window(options);
@@ -103,7 +110,9 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
           continue;
         }
         render_tile(view, camera, window, tiles[t], first, last, film, counters[t]);
-        progress.report(control, (first + (last - first) * static_cast<double>(++tiles_done) / static_cast<double>(tiles.size())) / options.samples);
+        progress.report(control, (first + (last - first) * static_cast<double>(++tiles_done) /
+                                              static_cast<double>(tiles.size())) /
+                                     options.samples);
       }
     });
     result.complete = !stopped;
@@ -115,7 +124,8 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
   return result;
 }
 
-void check(const scene::SurfaceField& field, const material::SpectralBasis& basis, const RenderOptions& o) {
+void check(const scene::SurfaceField& field, const material::SpectralBasis& basis,
+           const RenderOptions& o) {
   if (o.width < 1 || o.height < 1 || o.width > 65536 || o.height > 65536)
     throw std::invalid_argument("render: width and height must be within 1..65536");
   if (o.samples < 1) throw std::invalid_argument("render: samples must be at least 1");
@@ -138,8 +148,9 @@ PixelWindow pixel_window(const RenderOptions& o) {
   return {x0, y0, x1 - x0, y1 - y0};
 }
 
-RenderResult render(const scene::RayQuery& query, const material::SpectralBasis& basis, const scene::Camera& camera,
-                    const scene::SurfaceField& field, const RenderOptions& options, const scene::Control& control) {
+RenderResult render(const scene::RayQuery& query, const material::SpectralBasis& basis,
+                    const scene::Camera& camera, const scene::SurfaceField& field,
+                    const RenderOptions& options, const scene::Control& control) {
   check(field, basis, options);
   return with_lanes(basis.lanes(), [&](auto lanes) {
     return render_lanes<lanes()>(query, basis, camera, field, options, control);

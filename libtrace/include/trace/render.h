@@ -36,8 +36,8 @@ struct RenderOptions {
   int width = 640;
   int height = 480;
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1 as shares of the image
-  int samples = 64;        ///< camera samples per pixel
-  double time_limit = 0.0; ///< [s], looked at between passes over the image; 0: none
+  int samples = 64;                                ///< camera samples per pixel
+  double time_limit = 0.0;  ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
   int max_specular_depth = 64;  ///< mirror and glass events of one path (hybrid, paper)
   bool components = false;      ///< layers C1..C6 and emission
@@ -48,16 +48,17 @@ struct RenderResult {
   /// components C1.R ... C6.B and emission.*, whose sum is R,G,B.
   scene::Image image;
   scene::Counters counters;
-  int samples_done = 0;        ///< per pixel, smallest
-  double error_estimate = 0.0; ///< RMS of stderr.* over pixels, relative to the mean of the image
-  bool complete = true;        ///< false: stopped by time or request
+  int samples_done = 0;         ///< per pixel, smallest
+  double error_estimate = 0.0;  ///< RMS of stderr.* over pixels, relative to the mean of the image
+  bool complete = true;         ///< false: stopped by time or request
 };
 
 /// Renders one view. Deterministic for a scene, options and seed at any thread count (time limits
 /// and interrupts apart).
 /// \param field  may be empty: then there is no diffuse inter-reflection. Method::Hybrid only.
-[[nodiscard]] RenderResult render(const scene::RayQuery& query, const material::SpectralBasis& basis,
-                                  const scene::Camera& camera, const scene::SurfaceField& field,
-                                  const RenderOptions& options, const scene::Control& control = {});
+[[nodiscard]] RenderResult render(const scene::RayQuery& query,
+                                  const material::SpectralBasis& basis, const scene::Camera& camera,
+                                  const scene::SurfaceField& field, const RenderOptions& options,
+                                  const scene::Control& control = {});
 
 }  // namespace atrium::trace

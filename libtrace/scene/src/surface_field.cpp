@@ -64,6 +64,12 @@ std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std:
   return p.facet != nullptr ? nearest_element(*this, p) : kNone;
 }
 
+float SurfaceField::cell_size(const Scene& scene, ObjectId object, std::uint32_t triangle) const {
+  const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
+  if (index >= triangle_facet.size() || triangle_facet[index] == kNone) return 0.0f;
+  return 1.0f / facets[triangle_facet[index]].axis_u.norm();
+}
+
 SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
                                             std::uint32_t triangle, const Vec3f& position,
                                             Side side) const {

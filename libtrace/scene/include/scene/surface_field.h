@@ -59,6 +59,9 @@ struct SurfaceField {
   [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                          const Vec3f& position) const;
 
+  /// Edge of the elements at a triangle [m]; 0 where there are none.
+  [[nodiscard]] float cell_size(const Scene& scene, ObjectId object, std::uint32_t triangle) const;
+
   /// Weights of up to four elements that interpolate at a point; weights sum to 1 if count > 0.
   struct Stencil {
     int count = 0;
