@@ -58,7 +58,8 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
     facets_.emplace(
         std::min(facets_->c() / std::max(roughness_factor * roughness_factor, 1e-6f), kSmoothest));
   coherent_ = facets_ && s.sigma.has_value();
-  coherent_g_ = m.coherent_g;
+  coherent_g_ =
+      inside ? m.coherent_g * m.n * m.n : m.coherent_g;  // phases are those of the viewer's medium
   const bool matched = eta_ == Spectrum<N>::one() && k_.is_zero();
   const bool mirror = !facets_ || coherent_;
   if (k_rg_ > 0.0f && !matched)
@@ -98,6 +99,32 @@ Spectrum<N> Bsdf<N>::coherent_transmission(float mu) const {
   return Spectrum<N>::generate([&](int i) { return std::exp(-0.25f * coherent_g_[i] * d * d); });
 }
 
+// What the lobes keep of the light: symmetric in the two directions, and such that mirror,
+// straight part and both lobes together never exceed 1 (one common bound for R and T: their
+// coherent parts fade at different rates, so separate bounds could add up to more).
+template <int N>
+Spectrum<N> Bsdf<N>::incoherent_share(float mu_o, float mu_i) const {
+  if (!coherent_) return Spectrum<N>::one();
+  const bool through = k_tp_rg_ > 0.0f;
+  const float mu_r = mu_i > 0.0f ? std::min(mu_o, mu_i) : mu_o;
+  Spectrum<N> bound = coherent_reflection(mu_r);
+  const auto raise = [&](const Spectrum<N>& other) {
+    for (int i = 0; i < N; ++i) bound[i] = std::max(bound[i], other[i]);
+  };
+  if (through) raise(coherent_transmission(mu_o));
+  if (through && mu_i > 0.0f) raise(coherent_transmission(mu_i));
+  if (mu_i < 0.0f) {  // the far side's own factors, in its medium
+    const float cos2 = 1.0f - eta_mean_ * eta_mean_ * (1.0f - mu_i * mu_i);
+    const float d = std::sqrt(std::max(0.0f, cos2)) + eta_mean_ * mu_i;
+    const float r = eta_mean_ * mu_i;
+    raise(Spectrum<N>::generate([&](int i) {
+      return std::max(std::exp(-coherent_g_[i] * r * r),
+                      cos2 > 0.0f ? std::exp(-0.25f * coherent_g_[i] * d * d) : 0.0f);
+    }));
+  }
+  return Spectrum<N>::one() - bound;
+}
+
 template <int N>
 Spectrum<N> Bsdf<N>::mirror_weight(float mu) const {
   return fresnel(mu) * coherent_reflection(mu) * k_rg_;
@@ -118,7 +145,7 @@ Spectrum<N> Bsdf<N>::lobe_reflection(const Vec3f& wo, const Vec3f& wi) const {
   const float g = g_vcavity(wi.z(), wo.z(), h.z(), bh, bh);
   const float d = facets_->density(h) * g * k_rg_ / (4.0f * wi.z() * wo.z());
   if (!(d > 0.0f)) return {};
-  return fresnel(bh) * d * (Spectrum<N>::one() - coherent_reflection(std::min(wi.z(), wo.z())));
+  return fresnel(bh) * d * incoherent_share(wo.z(), wi.z());
 }
 
 template <int N>
@@ -144,20 +171,7 @@ Spectrum<N> Bsdf<N>::lobe_transmission(const Vec3f& wo, const Vec3f& wi,
                 (denominator * denominator);
   if (!(scale > 0.0f)) return {};
   if (transport == Transport::Flux) scale *= eta_mean_ * eta_mean_;
-  Spectrum<N> share = Spectrum<N>::one();
-  if (coherent_) {
-    const Spectrum<N> a = coherent_transmission(wo.z());
-    // Seen from the far side: its cosine outside is |wi.z|, inside that of the refracted ray.
-    const float mu_far = cos_refracted(wo.z());
-    const float d =
-        std::sqrt(std::max(0.0f, 1.0f - eta_mean_ * eta_mean_ * (1.0f - wi.z() * wi.z()))) -
-        eta_mean_ * -wi.z();
-    share = Spectrum<N>::generate([&](int i) {
-      const float b = mu_far > 0.0f ? std::exp(-0.25f * coherent_g_[i] * d * d) : 0.0f;
-      return 1.0f - std::max(a[i], b);
-    });
-  }
-  return (Spectrum<N>::one() - fresnel(bh)) * tint_ * share * scale;
+  return (Spectrum<N>::one() - fresnel(bh)) * tint_ * incoherent_share(wo.z(), wi.z()) * scale;
 }
 
 template <int N>

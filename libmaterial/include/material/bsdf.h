@@ -146,6 +146,7 @@ class Bsdf {
   [[nodiscard]] float cos_refracted(float cos_incident) const;      // 0: total reflection
   [[nodiscard]] Spectrum<N> coherent_reflection(float mu) const;    // Gamma_r
   [[nodiscard]] Spectrum<N> coherent_transmission(float mu) const;  // Gamma_t
+  [[nodiscard]] Spectrum<N> incoherent_share(float mu_o, float mu_i) const;
   [[nodiscard]] Spectrum<N> mirror_weight(float mu) const;
   [[nodiscard]] Spectrum<N> refraction_weight(float mu, Transport transport) const;
   [[nodiscard]] Spectrum<N> lobe_reflection(const Vec3f& wo, const Vec3f& wi) const;
