@@ -1,1 +1,85 @@
-namespace atrium::material {}
+#include "material/cie.h"
+
+#include <array>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "names.h"
+
+namespace atrium::material {
+namespace {
+
+#include "cie_tables.inc"
+
+SampledSpectrum on_table_grid(const double (&values)[kCount]) {
+  std::vector<double> nm(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) nm[i] = kFirstNm + kStepNm * static_cast<double>(i);
+  return make_sampled_spectrum(std::move(nm), std::vector<double>(values, values + kCount));
+}
+
+// XYZ of the Rec. 709 primaries, scaled so that (1, 1, 1) is the white D65, x = 0.3127, y = 0.3290.
+Eigen::Matrix3d primaries_to_xyz() {
+  const auto xyz = [](double x, double y) {
+    return Eigen::Vector3d(x / y, 1.0, (1.0 - x - y) / y);
+  };
+  Eigen::Matrix3d primaries;
+  primaries << xyz(0.64, 0.33), xyz(0.30, 0.60), xyz(0.15, 0.06);
+  const Eigen::Vector3d scale = primaries.inverse() * xyz(0.3127, 0.3290);
+  return primaries * scale.asDiagonal();
+}
+
+}  // namespace
+
+const SampledSpectrum& cie_x_bar() {
+  static const SampledSpectrum table = on_table_grid(kXBar);
+  return table;
+}
+
+const SampledSpectrum& cie_y_bar() {
+  static const SampledSpectrum table = on_table_grid(kYBar);
+  return table;
+}
+
+const SampledSpectrum& cie_z_bar() {
+  static const SampledSpectrum table = on_table_grid(kZBar);
+  return table;
+}
+
+const SampledSpectrum* find_illuminant(std::string_view name) {
+  static const std::array<std::pair<std::string_view, SampledSpectrum>, 5> tables = {
+      {{"A", on_table_grid(kIlluminantA)},
+       {"D65", on_table_grid(kIlluminantD65)},
+       {"E", on_table_grid(kIlluminantE)},
+       {"F2", on_table_grid(kIlluminantF2)},
+       {"F11", on_table_grid(kIlluminantF11)}}};
+  for (const auto& [known, table] : tables)
+    if (same_name(known, name)) return &table;
+  return nullptr;
+}
+
+const Eigen::Matrix3d& xyz_from_rgb() {
+  static const Eigen::Matrix3d matrix = primaries_to_xyz();
+  return matrix;
+}
+
+const Eigen::Matrix3d& rgb_from_xyz() {
+  static const Eigen::Matrix3d matrix = xyz_from_rgb().inverse();
+  return matrix;
+}
+
+Eigen::Vector3d xyz_of_reflectance(const SampledSpectrum& value,
+                                   const SampledSpectrum& illuminant) {
+  const std::vector<double>& grid = cie_y_bar().wavelength_nm;
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
+  double white = 0.0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double light = illuminant.at(grid[i]);
+    const Eigen::Vector3d cmf(cie_x_bar().value[i], cie_y_bar().value[i], cie_z_bar().value[i]);
+    xyz += value.at(grid[i]) * light * cmf;
+    white += light * cmf.y();
+  }
+  return xyz / white;
+}
+
+}  // namespace atrium::material

@@ -35,7 +35,9 @@ template <class Real>
 FresnelTerms<Real> fresnel_dielectric(Real c, Real n) {
   c = std::clamp(c, Real(0), Real(1));
   if (n == Real(1)) return {Real(0), Real(0)};
-  const Real g2 = (n - Real(1)) * (n + Real(1)) + c * c;
+  // Of the two equal forms the one whose terms cancel less.
+  const Real g2 =
+      n < c ? n * n - (Real(1) - c) * (Real(1) + c) : (n - Real(1)) * (n + Real(1)) + c * c;
   if (!(g2 > Real(0))) return {Real(1), Real(1)};  // total reflection
   const Real g = std::sqrt(g2);
   const Real gc = g + c;

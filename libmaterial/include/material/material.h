@@ -24,7 +24,7 @@ struct TextureSlot {
   TextureId texture;
   Vec2f scale = Vec2f::Ones();
   Vec2f offset = Vec2f::Zero();
-  float rotation = 0.0f;  ///< [rad], counter-clockwise as KHR_texture_transform
+  float rotation = 0.0f;  ///< [rad], counter-clockwise with v down, as KHR_texture_transform
   int channel = 0;        ///< for scalar parameters
   [[nodiscard]] Vec2f transform(const Vec2f& uv) const;
 };
@@ -60,7 +60,8 @@ struct Material {
   std::optional<double> sigma;
   TextureSlot roughness_texture;  ///< multiplies the glTF roughness sqrt(1/c), channel as given
 
-  // Weights in [0, 1]. Convex: k_df + k_rg = 1 and k_tp_df + k_tp_rg = 1.
+  // Weights in [0, 1]. Convex: k_df + k_rg = 1 and k_tp_df + k_tp_rg = 1 in the paper; less absorbs
+  // the rest, more is refused.
   double k_df = 1.0;
   double k_rg = 0.0;
   double k_tp_df = 0.0;

@@ -26,7 +26,9 @@ class SpectralBasis {
 
   [[nodiscard]] static SpectralBasis grey();
   [[nodiscard]] static SpectralBasis rgb();
-  /// \param lanes  4 or 8 bands over 380-730 nm with equal shares of D65 * (x_bar + y_bar + z_bar).
+  /// \param lanes  4 or 8 bands over 380-730 nm. \throws std::invalid_argument for other numbers.
+  /// Edges: near equal shares of D65 * (x_bar + y_bar + z_bar), moved so that the Rec. 709
+  /// primaries lie inside the bands' chromaticities; else no from_rgb >= 0 exists.
   [[nodiscard]] static SpectralBasis bands(int lanes);
 
   [[nodiscard]] Kind kind() const { return kind_; }
@@ -36,16 +38,21 @@ class SpectralBasis {
   [[nodiscard]] const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
 
   /// Reflectance, transmittance, or radiance relative to D65 white. Grey takes the luminance.
-  /// Sampled spectra are averaged over each band with weight D65 (Bands), or integrated to RGB.
+  /// Sampled spectra are integrated to RGB, or (Bands) averaged over each band with weight
+  /// D65 * (x_bar + y_bar + z_bar); then from_rgb of the colour that the averages miss is added.
+  /// Lanes are kept in [0, largest sample]; the colour is that of the 5 nm integration unless that
+  /// applies. (Averages alone: illuminant A in 8 bands is off by 0.03 of its luminance; with weight
+  /// D65: by 0.23.)
   template <int N>
   [[nodiscard]] Spectrum<N> resolve(const SpectralValue& value) const;
 
-  /// Emission given by samples of spectral radiance [W/(sr m^2 nm)]: lanes in nits.
+  /// Emission given by samples of spectral radiance [W/(sr m^2 nm)]: lanes in nits, 683 lm/W at
+  /// 555 nm. Values that are not sampled are in nits already and resolve as above.
   template <int N>
   [[nodiscard]] Spectrum<N> resolve_emission(const SpectralValue& value) const;
 
   /// A quantity that must not be mixed over wavelengths (n, k, extinction): sampled at the lane's
-  /// wavelength in Bands, averaged over the lane's response otherwise.
+  /// wavelength in Bands, averaged over the positive part of the lane's response otherwise.
   template <int N>
   [[nodiscard]] Spectrum<N> resolve_at_wavelength(const SpectralValue& value) const;
 
@@ -65,6 +72,8 @@ class SpectralBasis {
 
  private:
   SpectralBasis() = default;
+  // Lanes of samples relative to D65 on the 5 nm grid, kept in [0, highest].
+  [[nodiscard]] Eigen::VectorXd lanes_of(const Eigen::RowVectorXd& samples, double highest) const;
   Kind kind_ = Kind::Grey;
   int lanes_ = 1;
   std::vector<double> wavelengths_nm_;

@@ -9,8 +9,9 @@
 
 namespace atrium::material {
 
-/// An image in memory that a surface parameter is read from. Bilinear; (0, 0) is the top left
-/// corner as in glTF. Pixels are 8-bit as stored in the file; `srgb` says how they decode.
+/// An image in memory that a surface parameter is read from, of at least one pixel (asserted).
+/// Bilinear; (0, 0) is the top left corner as in glTF. Pixels are 8-bit as stored in the file;
+/// `srgb` says how they decode.
 struct Texture {
   enum class Wrap { Repeat, Mirror, Clamp };
 
@@ -25,7 +26,8 @@ struct Texture {
 
   /// Linear RGB; grey is repeated. \param uv any finite value; non-finite reads (0, 0).
   [[nodiscard]] Rgb rgb(const Vec2f& uv) const;
-  /// One channel, not decoded, in [0, 1]; a missing alpha is 1, any other missing channel is 0.
+  /// One channel, not decoded, in [0, 1]: 0 to 2 colour (grey is repeated), 3 alpha. A missing
+  /// alpha is 1, an index outside 0 to 3 reads 0.
   [[nodiscard]] float channel(const Vec2f& uv, int index) const;
   /// Area mean of rgb().
   [[nodiscard]] Rgb mean_rgb() const;
