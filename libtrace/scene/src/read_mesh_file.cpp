@@ -1,1 +1,121 @@
-namespace atrium::scene {}
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <unordered_map>
+
+#include "import_util.h"
+#include "material/error.h"
+#include "scene/scene_io.h"
+
+namespace atrium::scene {
+namespace {
+
+Eigen::Affine3d affine(const aiMatrix4x4& m) {
+  Eigen::Affine3d t = Eigen::Affine3d::Identity();
+  for (unsigned r = 0; r < 3; ++r) {
+    for (unsigned c = 0; c < 4; ++c) t.matrix()(r, c) = static_cast<double>(m[r][c]);
+  }
+  return t;
+}
+
+Vec3f vec(const aiVector3D& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// STL repeats every corner; equal ones become one vertex (it has no other attributes worth
+/// keeping).
+MeshData merged(const MeshData& soup) {
+  struct Hash {
+    std::size_t operator()(const std::array<double, 3>& p) const {
+      const std::hash<double> h;
+      return h(p[0]) * 73856093u ^ h(p[1]) * 19349663u ^ h(p[2]) * 83492791u;
+    }
+  };
+  MeshData out;
+  out.name = soup.name;
+  std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known;
+  std::vector<std::uint32_t> to(soup.positions.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec3d& p = soup.positions[i];
+    // Adding zero makes the two zeros one key.
+    const std::array<double, 3> key{p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
+    const auto [it, added] =
+        known.try_emplace(key, static_cast<std::uint32_t>(out.positions.size()));
+    if (added) out.positions.push_back(p);
+    to[i] = it->second;
+  }
+  for (const Triangle& t : soup.triangles) out.triangles.push_back({to[t[0]], to[t[1]], to[t[2]]});
+  return out;
+}
+
+MeshData mesh_data(const aiMesh& source, const std::filesystem::path& file) {
+  MeshData mesh;
+  mesh.name = source.mName.length > 0 ? source.mName.C_Str() : file.stem().string();
+  for (unsigned i = 0; i < source.mNumVertices; ++i) {
+    mesh.positions.push_back(vec(source.mVertices[i]).cast<double>());
+    if (source.HasNormals()) mesh.normals.push_back(vec(source.mNormals[i]));
+    if (source.HasTextureCoords(0)) {
+      const aiVector3D& uv = source.mTextureCoords[0][i];
+      mesh.uvs.emplace_back(static_cast<float>(uv.x), 1.0f - static_cast<float>(uv.y));
+    }
+    if (source.HasVertexColors(0)) {
+      const aiColor4D& c = source.mColors[0][i];
+      mesh.colors.push_back(Vec3f(c.r, c.g, c.b).cwiseMax(0.0f).cwiseMin(1.0f));
+    }
+  }
+  for (unsigned i = 0; i < source.mNumFaces; ++i) {
+    const aiFace& face = source.mFaces[i];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    const Triangle t{face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+    for (const std::uint32_t index : t) {
+      if (index >= source.mNumVertices) {
+        throw Error(file.string() + ": face " + std::to_string(i) + ": vertex index " +
+                    std::to_string(index) + " is out of range (" +
+                    std::to_string(source.mNumVertices) + " vertices)");
+      }
+    }
+    mesh.triangles.push_back(t);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadOptions&) {
+  static_cast<void>(read_file_bytes(file));  // says what is wrong with a file that is none
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    throw Error(file.string() + ": " + one_line(importer.GetErrorString()));
+  }
+  const bool stl = file.extension() != ".ply" && file.extension() != ".PLY";
+  MaterialId material;
+  std::vector<std::pair<const aiNode*, Eigen::Affine3d>> open{
+      {scene->mRootNode, Eigen::Affine3d::Identity()}};
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const aiNode* node = open[i].first;
+    const Eigen::Affine3d to_world = open[i].second * affine(node->mTransformation);
+    for (unsigned k = 0; k < node->mNumChildren; ++k)
+      open.emplace_back(node->mChildren[k], to_world);
+    for (unsigned k = 0; k < node->mNumMeshes; ++k) {
+      MeshData mesh = mesh_data(*scene->mMeshes[node->mMeshes[k]], file);
+      if (mesh.triangles.empty()) continue;
+      if (stl) mesh = merged(mesh);
+      if (!material.valid()) {
+        material = MaterialId(model.materials.size());
+        model.materials.push_back(grey_material(file.stem().string()));
+      }
+      Model::Node out;
+      out.name = mesh.name;
+      out.mesh = MeshId(model.meshes.size());
+      out.material = material;
+      out.to_world = to_world;
+      model.meshes.push_back(std::move(mesh));
+      model.nodes.push_back(std::move(out));
+    }
+  }
+  if (!material.valid()) throw Error(file.string() + ": has no triangles");
+}
+
+}  // namespace atrium::scene

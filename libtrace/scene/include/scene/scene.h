@@ -44,7 +44,8 @@ struct LoadReport {
   std::uint64_t non_finite_dropped = 0;
   std::uint64_t triangles_flipped = 0;     ///< winding made consistent
   std::uint64_t non_manifold_edges = 0;
-  std::uint64_t t_junctions = 0;
+  std::uint64_t t_junctions = 0;           ///< estimate: vertices inside another boundary edge
+  std::uint64_t coplanar_twins = 0;        ///< same three positions in another object; kept
   std::uint64_t meshes_closed = 0;
   std::uint64_t meshes_shared = 0;
   std::uint64_t normals_made = 0;          ///< meshes that came without

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <tiny_gltf.h>
+
+namespace atrium::scene {
+
+/// A parsed glTF file. Its structure is what the JSON says: indices are not checked yet.
+struct GltfDocument {
+  std::filesystem::path file;
+  tinygltf::Model model;  ///< Image::image holds encoded bytes (data URIs only)
+  std::vector<std::string> warnings;
+
+  /// "FILE: what"
+  [[nodiscard]] std::string at(const std::string& what) const {
+    return file.string() + ": " + what;
+  }
+};
+
+/// Reads .gltf and .glb with external buffers and data URIs. Images stay encoded.
+/// \throws Error for anything that is no glTF 2.0 or lacks a buffer.
+[[nodiscard]] GltfDocument load_gltf(const std::filesystem::path& file);
+
+}  // namespace atrium::scene

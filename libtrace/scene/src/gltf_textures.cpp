@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <optional>
+
+#include "gltf_accessor.h"
+#include "gltf_material.h"
+#include "import_util.h"
+#include "material/error.h"
+#include "scene/image_io.h"
+#include "scene/parallel.h"
+
+namespace atrium::scene {
+namespace {
+
+using Wrap = material::Texture::Wrap;
+
+Wrap wrap_of(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::Clamp;
+  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::Mirror : Wrap::Repeat;
+}
+
+material::Texture decode_image(const GltfDocument& document, int index) {
+  const auto& images = document.model.images;
+  if (index < 0 || static_cast<std::size_t>(index) >= images.size()) {
+    throw Error(document.at("image " + std::to_string(index) + " does not exist"));
+  }
+  const tinygltf::Image& image = images[static_cast<std::size_t>(index)];
+  const std::string ending = image.mimeType == "image/jpeg" ? ".jpg" : ".png";
+  const std::string who = "image " + std::to_string(index);
+  if (image.bufferView >= 0) {
+    const auto bytes = gltf_view_bytes(document, image.bufferView, who);
+    return decode_texture({bytes.begin(), bytes.end()}, document.at(who + ending));
+  }
+  if (!image.image.empty()) return decode_texture(image.image, document.at(who + ending));
+  return read_texture(document.file.parent_path() / percent_decode(image.uri));
+}
+
+material::Texture decode(const GltfDocument& document, int index, bool srgb) {
+  const auto& model = document.model;
+  if (static_cast<std::size_t>(index) >= model.textures.size()) {
+    throw Error(document.at("texture " + std::to_string(index) + " does not exist"));
+  }
+  const tinygltf::Texture& texture = model.textures[static_cast<std::size_t>(index)];
+  material::Texture out = decode_image(document, texture.source);
+  out.srgb = srgb;
+  if (texture.sampler >= 0 && static_cast<std::size_t>(texture.sampler) < model.samplers.size()) {
+    const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
+    out.wrap_u = wrap_of(sampler.wrapS);
+    out.wrap_v = wrap_of(sampler.wrapT);
+  }
+  return out;
+}
+
+}  // namespace
+
+GltfTextures::GltfTextures(const GltfDocument& document, Model& model) {
+  for (const tinygltf::Material& m : document.model.materials) {
+    const auto want = [&](int index, bool srgb) {
+      if (index >= 0) ids_[{index, srgb}] = {};
+    };
+    want(m.pbrMetallicRoughness.baseColorTexture.index, true);
+    want(m.emissiveTexture.index, true);
+    want(m.pbrMetallicRoughness.metallicRoughnessTexture.index, false);
+    want(m.normalTexture.index, false);
+  }
+  std::vector<std::pair<int, bool>> wanted;
+  for (const auto& [key, id] : ids_) wanted.push_back(key);
+  std::vector<std::optional<material::Texture>> decoded(wanted.size());
+  std::vector<std::string> failures(wanted.size());
+  parallel_for(wanted.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      try {
+        decoded[i] = decode(document, wanted[i].first, wanted[i].second);
+      } catch (const std::exception& e) {
+        failures[i] = e.what();
+      }
+    }
+  });
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (decoded[i]) {
+      ids_[wanted[i]] = material::TextureId{static_cast<std::uint32_t>(model.textures.size())};
+      model.textures.push_back(std::move(*decoded[i]));
+    } else {
+      model.warnings.push_back(document.at("texture " + std::to_string(wanted[i].first) +
+                                           " left out: " + one_line(failures[i])));
+    }
+  }
+}
+
+material::TextureId GltfTextures::find(int texture, bool srgb) const {
+  const auto it = ids_.find({texture, srgb});
+  return it == ids_.end() ? material::TextureId{} : it->second;
+}
+
+}  // namespace atrium::scene

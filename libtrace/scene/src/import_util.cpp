@@ -1,0 +1,114 @@
+#include "import_util.h"
+
+#include <cmath>
+#include <fstream>
+
+#include "material/error.h"
+#include "scene/image_io.h"
+
+namespace atrium::scene {
+
+std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& file, std::uintmax_t limit) {
+  std::error_code code;
+  const auto status = std::filesystem::status(file, code);
+  if (code || !std::filesystem::exists(status)) throw Error(file.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(status)) throw Error(file.string() + ": not a file");
+  const std::uintmax_t size = std::filesystem::file_size(file, code);
+  if (code) throw Error(file.string() + ": cannot be read: " + code.message());
+  if (size == 0) throw Error(file.string() + ": the file is empty");
+  if (size > limit)
+    throw Error(file.string() + ": larger than " + std::to_string(limit) + " bytes");
+  std::ifstream in(file, std::ios::binary);
+  std::vector<std::uint8_t> bytes(size);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!in) throw Error(file.string() + ": cannot be read");
+  return bytes;
+}
+
+std::string one_line(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\r') continue;
+    if (c != '\n') {
+      out += c;
+    } else if (!out.empty() && out.back() != ';') {
+      out += ';';
+    }
+  }
+  while (!out.empty() && (out.back() == ';' || out.back() == ' ')) out.pop_back();
+  std::string spaced;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    spaced += out[i];
+    if (out[i] == ';' && i + 1 < out.size() && out[i + 1] != ' ') spaced += ' ';
+  }
+  return spaced;
+}
+
+std::string percent_decode(const std::string& uri) {
+  const auto hex = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const bool escape =
+        uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0;
+    if (!escape) {
+      out += uri[i];
+      continue;
+    }
+    out += static_cast<char>(hex(uri[i + 1]) * 16 + hex(uri[i + 2]));
+    i += 2;
+  }
+  return out;
+}
+
+material::Material grey_material(const std::string& name) {
+  material::Material m;
+  m.name = name;
+  m.body_reflectance = 0.5;
+  return m;
+}
+
+double unit_range(double value) { return value > 0.0 ? std::fmin(value, 1.0) : 0.0; }
+
+Rgb unit_range(const Rgb& value) {
+  return Rgb::generate([&](int i) { return unit_range(static_cast<double>(value[i])); });
+}
+
+void set_metal(material::Material& material, const Rgb& f0) {
+  Rgb n;
+  Rgb kappa;
+  for (int i = 0; i < 3; ++i) {
+    const double r = std::fmin(unit_range(static_cast<double>(f0[i])), 0.999);
+    n[i] = static_cast<float>((1.0 - r) / (1.0 + r));
+    kappa[i] = static_cast<float>(2.0 * std::sqrt(r) / (1.0 - r));
+  }
+  material.medium = material::Material::Medium::Opaque;
+  material.combination = material::Material::Combination::Convex;
+  material.n = n;
+  material.kappa = kappa;
+  material.k_rg = 1.0;
+  material.k_df = 0.0;
+}
+
+double roughness_to_c(double roughness) {
+  const double m = unit_range(roughness) * unit_range(roughness);
+  return m < 1e-3 ? std::numeric_limits<double>::infinity() : 1.0 / m;
+}
+
+material::TextureId add_texture_file(Model& model, const std::filesystem::path& file, bool srgb) {
+  try {
+    material::Texture texture = read_texture(file);
+    texture.srgb = srgb;
+    model.textures.push_back(std::move(texture));
+    return material::TextureId{static_cast<std::uint32_t>(model.textures.size() - 1)};
+  } catch (const std::exception& e) {
+    model.warnings.push_back("texture left out: " + one_line(e.what()));
+    return {};
+  }
+}
+
+}  // namespace atrium::scene

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/mesh.h"
+#include "scene/scene.h"
+
+namespace atrium::scene {
+
+/// The whole file. \throws Error "FILE: ..." if missing, no regular file, empty or above the limit.
+[[nodiscard]] std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& file,
+                                                        std::uintmax_t limit = 0xFFFFFFFFu);
+
+/// Line breaks become "; ", trailing ones vanish: messages of parsers fit on one line.
+[[nodiscard]] std::string one_line(const std::string& text);
+
+/// %20 and friends of a URI.
+[[nodiscard]] std::string percent_decode(const std::string& uri);
+
+/// The material of geometry that names none: grey, reflectance 0.5, diffuse.
+[[nodiscard]] material::Material grey_material(const std::string& name);
+
+/// Sets k_rg, (n, kappa) per channel of a metal whose reflectance at normal incidence is f0.
+///
+/// Gulbrandsen 2014 with edge tint 1: n = (1 - r)/(1 + r), k = 2 sqrt(r)/(1 + r), so |N| = 1 and
+/// kappa = k/n = 2 sqrt(r)/(1 - r). r is limited to 0.999. (MATERIAL_MODEL 7)
+void set_metal(material::Material& material, const Rgb& f0);
+
+/// Roughness of glTF (0 to 1) to c [1/rad]: m = roughness^2, c = 1/m; m below 1e-3 is smooth.
+[[nodiscard]] double roughness_to_c(double roughness);
+
+/// Clamped to [0, 1]; not a number becomes 0.
+[[nodiscard]] double unit_range(double value);
+[[nodiscard]] Rgb unit_range(const Rgb& value);
+
+/// Reads a texture into the model. \return invalid, with a warning in the model, if that fails.
+[[nodiscard]] material::TextureId add_texture_file(Model& model, const std::filesystem::path& file,
+                                                   bool srgb);
+
+}  // namespace atrium::scene
