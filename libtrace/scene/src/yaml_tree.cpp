@@ -116,8 +116,8 @@ class Builder : public YAML::EventHandler {
       map.has_key = false;
       return;
     }
-    const std::string place = name_ + ":" + std::to_string(node.line) + ":" +
-                              std::to_string(node.column) + ": ";
+    const std::string place =
+        name_ + ":" + std::to_string(node.line) + ":" + std::to_string(node.column) + ": ";
     if (node.kind != YamlNode::Kind::Scalar) throw Error(place + "a key must be plain text");
     for (const YamlNode::Entry& other : map.node.entries) {
       if (other.key == node.text) throw Error(place + "key '" + node.text + "' appears twice");

@@ -13,11 +13,11 @@ struct YamlNode {
   struct Entry;
 
   Kind kind = Kind::Null;
-  int line = 1;    ///< from 1
-  int column = 1;  ///< from 1
-  std::string text;              ///< Scalar
-  std::vector<YamlNode> items;   ///< Sequence
-  std::vector<Entry> entries;    ///< Map, in file order
+  int line = 1;                 ///< from 1
+  int column = 1;               ///< from 1
+  std::string text;             ///< Scalar
+  std::vector<YamlNode> items;  ///< Sequence
+  std::vector<Entry> entries;   ///< Map, in file order
 };
 struct YamlNode::Entry {
   std::string key;

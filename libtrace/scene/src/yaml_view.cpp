@@ -117,8 +117,8 @@ YamlMap YamlView::map(std::string_view what, std::initializer_list<std::string_v
     YamlNode key;
     key.line = entry.line;
     key.column = entry.column;
-    YamlView(key, *file_).fail("unknown key '" + entry.key + "' in " + name +
-                               "; known keys: " + listed(known));
+    YamlView(key, *file_)
+        .fail("unknown key '" + entry.key + "' in " + name + "; known keys: " + listed(known));
   }
   return YamlMap(*this, name);
 }
