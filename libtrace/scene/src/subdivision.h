@@ -2,27 +2,18 @@
 
 #include <optional>
 
-#include <Eigen/Geometry>
-
 #include "scene/camera.h"
 #include "scene/mesh.h"
 
 namespace atrium::scene {
 
-/// Triangles of the limit surface of cage_mesh.cage, with limit positions and limit normals; local
-/// coordinates, as the cage. Without a cage the mesh comes back as it is.
+/// Triangles on the limit surface of MeshData::cage, with normals; other arrays are carried along.
 ///
-/// Rates follow curvature and distance per face, with one rate per shared edge, so neighbours meet
-/// without cracks: boundary positions are equal to the last bit. Corners on an infinitely sharp
-/// crease appear once per side, with that side's normal. Per-vertex uvs and colours are carried
-/// along (interpolated within faces).
-///
-/// \param max_error  > 0: largest chord error, as a share of the distance to the eye (parallel
-/// view:
-///                   of the height of the view; none: of the diagonal of the mesh in the world).
-///                   Rates stop at 64 per edge, and lower where the mesh would exceed 8 million
-///                   triangles.
-/// \throws Error for a cage that is none (indices, non-finite points), or without OpenSubdiv.
+/// \param cage_mesh  a mesh with a cage.
+/// \param max_error  largest distance between limit surface and triangles, as a share of the
+///                   distance to the eye (or of the mesh's own diagonal without a view).
+/// \param to_world   the place the mesh is seen at; the result stays in local coordinates.
+/// \throws Error that names the mesh if the cage is broken.
 [[nodiscard]] MeshData tessellate(const MeshData& cage_mesh, double max_error,
                                   const Eigen::Affine3d& to_world,
                                   const std::optional<Camera>& view);
