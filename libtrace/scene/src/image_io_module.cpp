@@ -74,7 +74,10 @@ class OiioModule final : public ImageIoModule {
     OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes), size);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    auto input = OIIO::ImageInput::open(format_name(bytes, size, name), &config, &memory);
+    // As an attribute: the parameter of open() is not passed on to the reader in OpenImageIO 2.4.
+    void* proxy = &memory;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    auto input = OIIO::ImageInput::open(format_name(bytes, size, name), &config);
     if (!input) return one_line(OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
     if (std::string problem = check_size(spec); !problem.empty()) return problem;
@@ -121,15 +124,15 @@ class OiioModule final : public ImageIoModule {
   std::string write(const Image& image, const std::string& file) const override try {
     auto output = OIIO::ImageOutput::create(file);
     if (!output) return one_line(OIIO::geterror());
-    const bool display = !output->supports("multichannel") || !is_float_format(*output);
+    const bool exr = std::string(output->format_name()) == "openexr";
+    const bool floats = exr || std::string(output->format_name()) == "hdr";
     OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()),
-                         display ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-    if (is_format(*output, "hdr")) spec.format = OIIO::TypeDesc::FLOAT;
+                         floats ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     spec.channelnames = image.channels;
-    if (is_format(*output, "openexr")) {
+    if (exr) {
       spec.attribute("compression", "zip");
       for (const auto& [key, value] : image.metadata) spec.attribute(key, value);
-    } else if (spec.format == OIIO::TypeDesc::UINT8) {
+    } else if (!floats) {
       spec.attribute("oiio:ColorSpace", "sRGB");
       spec.attribute("CompressionQuality", 95);
     }
@@ -142,13 +145,6 @@ class OiioModule final : public ImageIoModule {
   }
 
  private:
-  static bool is_format(const OIIO::ImageOutput& output, const char* name) {
-    return std::string(output.format_name()) == name;
-  }
-  static bool is_float_format(const OIIO::ImageOutput& output) {
-    return is_format(output, "openexr") || is_format(output, "hdr");
-  }
-
   static void linearise(const OIIO::ImageSpec& spec, Image& image) {
     const std::size_t n = image.channels.size();
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
