@@ -20,10 +20,16 @@ void preload_image_io();
 /// Decodes PNG, JPEG, ... to 8 bits. `bytes`: the file in memory, `name` for messages and format.
 /// \throws Error if it is no image; RuntimeFailure if the module is missing.
 [[nodiscard]] material::Texture read_texture(const std::filesystem::path& file);
-[[nodiscard]] material::Texture decode_texture(const std::vector<std::uint8_t>& bytes, const std::string& name);
+[[nodiscard]] material::Texture decode_texture(const std::vector<std::uint8_t>& bytes,
+                                               const std::string& name);
 
 /// Linear floats of EXR, PFM, HDR (also PNG/JPEG, decoded from sRGB).
 [[nodiscard]] Image read_image(const std::filesystem::path& file);
+
+/// Does the ending name a format that write_image() knows?
+[[nodiscard]] bool is_image_ending(const std::filesystem::path& file);
+/// ... one that holds 8-bit display values (.png .jpg .jpeg), which are tone mapped first?
+[[nodiscard]] bool is_display_ending(const std::filesystem::path& file);
 
 /// .exr: all channels, 32-bit float, metadata. .pfm .hdr: R, G, B linear. .png .jpg: R, G, B taken
 /// as display values in [0, 1] (tone map first), 8 bits. Written to a temporary beside it, then

@@ -14,12 +14,12 @@ namespace atrium::scene {
 struct PolygonMesh {
   struct Array {
     std::string name;
-    int components = 1;          ///< 1 or 3 (RGB)
-    std::vector<float> values;   ///< tuples x components
+    int components = 1;         ///< 1 or 3 (RGB)
+    std::vector<float> values;  ///< tuples x components
   };
-  std::vector<Vec3d> points;                 ///< world coordinates [m]
+  std::vector<Vec3d> points;  ///< world coordinates [m]
   std::vector<std::uint32_t> polygon_sizes;
-  std::vector<std::uint32_t> polygon_points; ///< concatenated
+  std::vector<std::uint32_t> polygon_points;  ///< concatenated
   std::vector<Array> cell_arrays;
   std::vector<Array> point_arrays;
   std::map<std::string, std::string> field_data;  ///< units, version, ...
@@ -29,5 +29,7 @@ struct PolygonMesh {
 /// use. Complete or absent, as write_image(). \throws Error, RuntimeFailure.
 void write_polygon_mesh(const PolygonMesh& mesh, const std::filesystem::path& file);
 [[nodiscard]] bool mesh_io_available();
+/// Does the ending name a format that write_polygon_mesh() knows?
+[[nodiscard]] bool is_mesh_ending(const std::filesystem::path& file);
 
 }  // namespace atrium::scene

@@ -1,0 +1,137 @@
+#include "hash64.h"
+#include "scene/solution_io.h"
+
+namespace atrium::scene {
+
+namespace {
+
+void add(Hash64& h, const material::SpectralValue& value) {
+  h.word(value.index());
+  if (const auto* number = std::get_if<double>(&value)) {
+    h.value(*number);
+  } else if (const auto* rgb = std::get_if<Rgb>(&value)) {
+    for (int i = 0; i < 3; ++i) h.value((*rgb)[i]);
+  } else {
+    const auto& samples = std::get<material::SampledSpectrum>(value);
+    h.array(samples.wavelength_nm);
+    h.array(samples.value);
+  }
+}
+
+void add(Hash64& h, const std::optional<material::SpectralValue>& value) {
+  h.value(value.has_value());
+  if (value) add(h, *value);
+}
+
+template <class Vector>
+void add_vector(Hash64& h, const Vector& v) {
+  for (Eigen::Index i = 0; i < v.size(); ++i) h.value(v.data()[i]);
+}
+
+void add(Hash64& h, const material::TextureSlot& slot) {
+  h.value(slot.texture.value);
+  if (!slot.texture.valid()) return;
+  add_vector(h, slot.scale);
+  add_vector(h, slot.offset);
+  h.value(slot.rotation);
+  h.value(slot.channel);
+}
+
+void add(Hash64& h, const material::Material& m) {
+  h.value(m.medium);
+  h.value(m.combination);
+  h.value(m.sigma.has_value());
+  h.value(m.sigma.value_or(0.0));
+  for (const double v :
+       {m.c, m.k_df, m.k_rg, m.k_tp_df, m.k_tp_rg, m.pane_thickness, m.ray_c1, m.ray_c2}) {
+    h.value(v);
+  }
+  for (const auto* v : {&m.n, &m.kappa, &m.transmission_tint, &m.extinction, &m.emission})
+    add(h, *v);
+  add(h, m.body_reflectance);
+  add(h, m.body_transmittance);
+  for (const auto* slot : {&m.roughness_texture, &m.body_texture, &m.reflectance_texture,
+                           &m.emission_texture, &m.normal_texture, &m.alpha_texture}) {
+    add(h, *slot);
+  }
+  for (const float v : {m.normal_scale, m.alpha_cutoff, m.alpha_factor}) h.value(v);
+  for (const bool v : {m.emission_spectral_watts, m.emits_both_sides, m.one_sided}) h.value(v);
+}
+
+void add(Hash64& h, const material::Texture& t) {
+  h.value(t.width);
+  h.value(t.height);
+  h.value(t.channels);
+  h.value(t.srgb);
+  h.value(t.wrap_u);
+  h.value(t.wrap_v);
+  h.array(t.pixels);
+}
+
+void add(Hash64& h, const Falloff& f) {
+  h.value(f.c1);
+  h.value(f.c2);
+}
+
+struct AddLight {
+  Hash64& h;
+  void operator()(const PointLight& l) const {
+    add(h, l.intensity);
+    add(h, l.falloff);
+  }
+  void operator()(const SpotLight& l) const {
+    add(h, l.intensity);
+    h.value(l.inner_angle);
+    h.value(l.outer_angle);
+    add(h, l.falloff);
+  }
+  void operator()(const DirectionalLight& l) const {
+    add(h, l.irradiance);
+    h.value(l.angular_radius);
+  }
+  void operator()(const ProfileLight& l) const {
+    h.array(l.profile.theta_deg);
+    h.array(l.profile.phi_deg);
+    h.array(l.profile.candela);
+    add(h, l.scale);
+    add(h, l.falloff);
+  }
+};
+
+void add(Hash64& h, const Mesh& mesh) {
+  h.array(mesh.positions);
+  h.array(mesh.normals);
+  h.array(mesh.uvs);
+  h.array(mesh.colors);
+  h.array(mesh.triangles);
+}
+
+}  // namespace
+
+std::uint64_t hash_scene(const Scene& scene) {
+  Hash64 h;
+  for (const Mesh& mesh : scene.meshes) add(h, mesh);
+  for (const Object& o : scene.objects) {
+    h.value(o.mesh.value);
+    h.value(o.material.value);
+    h.value(o.first_triangle);
+    h.value(o.instanced);
+    add_vector(h, o.to_scene.matrix());
+  }
+  for (const material::Material& m : scene.materials) add(h, m);
+  for (const material::Texture& t : scene.textures) add(h, t);
+  for (const Light& light : scene.lights) {
+    h.word(light.kind.index());
+    std::visit(AddLight{h}, light.kind);
+    add_vector(h, light.to_scene.matrix());
+  }
+  if (scene.environment) {
+    add(h, scene.environment->radiance);
+    h.value(scene.environment->image.value);
+    add_vector(h, scene.environment->to_scene.matrix());
+  }
+  h.value(scene.unit);
+  return h.result();
+}
+
+}  // namespace atrium::scene

@@ -1,0 +1,136 @@
+#include "scene/solution_io.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "material/error.h"
+#include "support/temp_folder.h"
+
+namespace {
+
+using atrium::Error;
+using atrium::scene::hash_scene;
+using atrium::scene::read_solution;
+using atrium::scene::Scene;
+using atrium::scene::Solution;
+using atrium::scene::SurfaceField;
+using atrium::scene::write_solution;
+using atrium::test::TempFolder;
+
+/// Two facets of 2x1 cells, three elements (one cell is empty), three lanes.
+Solution sample_solution() {
+  Solution s;
+  s.scene_hash = 0x0123456789abcdefULL;
+  s.basis = "3 RGB lanes";
+  s.options = "solver rows";
+  SurfaceField& f = s.field;
+  f.lanes = 3;
+  f.unit = "lx";
+  f.facets.resize(2);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    f.facets[i].origin = atrium::Vec3f(1.0f, 2.0f, static_cast<float>(i));
+    f.facets[i].axis_u = atrium::Vec3f::UnitX();
+    f.facets[i].axis_v = atrium::Vec3f::UnitY();
+    f.facets[i].nx = 2;
+    f.facets[i].ny = 1;
+    f.facets[i].first_cell = 2 * i;
+  }
+  f.cell_element = {0, 1, 2, SurfaceField::kNone};
+  f.triangle_facet = {0, 1, SurfaceField::kNone};
+  f.element_facet = {0, 0, 1};
+  f.element_cell = {0, 1, 0};
+  f.element_area = {1.0f, 0.5f, 0.25f};
+  for (int i = 0; i < 18; ++i) f.irradiance.direct.push_back(static_cast<float>(i));
+  f.irradiance.indirect.assign(18, 7.0f);
+  f.standard_error.assign(6, 0.1f);
+  f.valid.assign(6, 1);
+  return s;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(SolutionIo, RoundTrip) {
+  const TempFolder folder;
+  const Solution a = sample_solution();
+  write_solution(a, folder / "a.atrium");
+  const Solution b = read_solution(folder / "a.atrium");
+  EXPECT_EQ(a.scene_hash, b.scene_hash);
+  EXPECT_EQ(a.basis, b.basis);
+  EXPECT_EQ(a.options, b.options);
+  EXPECT_EQ(a.field.unit, b.field.unit);
+  EXPECT_EQ(a.field.cell_element, b.field.cell_element);
+  EXPECT_EQ(a.field.irradiance.direct, b.field.irradiance.direct);
+  EXPECT_TRUE(b.field.irradiance.caustic.empty());
+  EXPECT_EQ(a.field.valid, b.field.valid);
+  EXPECT_EQ(a.field.facets[1].origin, b.field.facets[1].origin);
+  // Written again the file is the same: nothing was lost.
+  write_solution(b, folder / "b.atrium");
+  EXPECT_EQ(bytes_of(folder / "a.atrium"), bytes_of(folder / "b.atrium"));
+}
+
+TEST(SolutionIo, EveryTruncationIsAnError) {
+  const TempFolder folder;
+  write_solution(sample_solution(), folder / "a.atrium");
+  const std::string whole = bytes_of(folder / "a.atrium");
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    folder.write("cut.atrium", whole.substr(0, size));
+    EXPECT_THROW((void)read_solution(folder / "cut.atrium"), Error) << size;
+  }
+}
+
+TEST(SolutionIo, EveryChangedByteIsAnError) {
+  const TempFolder folder;
+  write_solution(sample_solution(), folder / "a.atrium");
+  const std::string whole = bytes_of(folder / "a.atrium");
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::string changed = whole;
+    changed[i] = static_cast<char>(changed[i] ^ 0x40);
+    folder.write("bad.atrium", changed);
+    EXPECT_THROW((void)read_solution(folder / "bad.atrium"), Error) << i;
+  }
+}
+
+// The checksum is right here: what is refused is the content.
+TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
+  const TempFolder folder;
+  const auto refused = [&](auto&& change) {
+    Solution s = sample_solution();
+    change(s.field);
+    write_solution(s, folder / "a.atrium");
+    EXPECT_THROW((void)read_solution(folder / "a.atrium"), Error);
+  };
+  refused([](SurfaceField& f) { f.cell_element[0] = 3; });
+  refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
+  refused([](SurfaceField& f) { f.facets[1].first_cell = 3; });
+  refused([](SurfaceField& f) { f.irradiance.direct.pop_back(); });
+  refused([](SurfaceField& f) { f.lanes = 5; });
+}
+
+TEST(HashScene, SeesGeometryMaterialsAndLights) {
+  Scene scene;
+  scene.meshes.resize(1);
+  scene.meshes[0].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  scene.meshes[0].triangles = {{0, 1, 2}};
+  scene.objects.resize(1);
+  scene.materials.resize(1);
+  scene.lights.resize(1);
+  const std::uint64_t base = hash_scene(scene);
+  const auto changed = [&](auto&& change) {
+    Scene other = scene;
+    change(other);
+    return hash_scene(other) != base;
+  };
+  EXPECT_TRUE(changed([](Scene& s) { s.meshes[0].positions[1].x() = 1.0000001f; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.materials[0].k_df = 0.999; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.materials[0].emission = atrium::make_rgb(0, 0, 1); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.lights[0].to_scene.translation().z() = 1.0; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.lights[0].kind = atrium::scene::SpotLight{}; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.environment.emplace(); }));
+  EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
+}
+
+}  // namespace
