@@ -131,7 +131,7 @@ TEST(PathTracer, PointLightFollowsInverseSquareAndPanesTransmit) {
       s.quad(s.material(glass), {-2, 1.5, -2}, {4, 0, 0}, {0, 0, 4});
     }
     scene::Light light;
-    light.kind = scene::PointLight{.intensity = 1000.0};
+    light.kind = scene::PointLight{.intensity = 1000.0, .falloff = {}};
     light.to_scene.translation() = Vec3d(0, 3, 0);
     s.model().lights.push_back(light);
     RenderOptions o = path_options(4, 64);
