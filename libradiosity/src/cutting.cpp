@@ -147,11 +147,9 @@ CutFacet cut_facet(const Corners& corners, const Facet& facet, double cell, doub
   for (const std::uint32_t t : facet.triangles) cutter.cut(corners[t], t);
   std::stable_sort(cutter.pieces.begin(), cutter.pieces.end(),
                    [](const CellPiece& a, const CellPiece& b) { return a.cell < b.cell; });
-  CutFacet result{.grid = {.origin = grid.origin.cast<float>(),
-                           .axis_u = grid.axis_u.cast<float>(),
-                           .axis_v = grid.axis_v.cast<float>(),
-                           .nx = grid.nx,
-                           .ny = grid.ny}};
+  CutFacet result;
+  result.grid = {grid.origin.cast<float>(), grid.axis_u.cast<float>(), grid.axis_v.cast<float>(),
+                 grid.nx, grid.ny, 0};
   for (CellPiece& p : cutter.pieces) {
     if (result.element_cell.empty() || result.element_cell.back() != p.cell) {
       result.element_cell.push_back(p.cell);

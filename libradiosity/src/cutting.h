@@ -10,7 +10,8 @@ namespace atrium::radiosity {
 /// A facet's grid and the pieces of its triangles, sorted by element. Elements are the occupied
 /// cells in the order of their cell numbers.
 struct CutFacet {
-  scene::SurfaceField::Facet grid;  ///< first_cell is still 0
+  /// first_cell is still 0
+  scene::SurfaceField::Facet grid{Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero(), 0, 0, 0};
   std::vector<std::uint32_t> element_cell;
   std::vector<std::uint32_t> first_piece;  ///< element_cell.size() + 1
   std::vector<ElementPiece> pieces;        ///< without their object

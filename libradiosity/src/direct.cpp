@@ -72,9 +72,8 @@ class SideLight {
     if (which_ == DirectLights::NoSurfaces && is_surface) return result;
     const float cosine = s->wi.dot(normal);
     if (!(cosine > 0.0f) || s->radiance.is_zero()) return result;
-    const scene::Ray ray{scene::offset_origin(p, s->wi), s->wi, 0.0f, s->distance * (1.0f - 1e-4f)};
     const Spectrum<N> arriving =
-        problem_.shading.transmittance(ray, counters, Counter::RaysDirect) * s->radiance;
+        problem_.shading.visibility(p, *s, counters, Counter::RaysDirect) * s->radiance;
     result.irradiance = arriving * (cosine / s->pdf);
     if (coupled) result.body_weight = problem_.shading.interact(p, normal).bsdf.body_weight(cosine);
     return result;

@@ -170,7 +170,7 @@ class Builder {
       field.element_area.push_back(area);
       e.first_piece.push_back(static_cast<std::uint32_t>(e.pieces.size()));
     }
-    cut = {};
+    cut.pieces = {};
   }
 
   const Scene& scene_;

@@ -86,6 +86,8 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
     if (s->event != material::kPaneStraight) specular = true;
 
     const Vec3f direction = at.to_world(s->wi);
+    // Shading normals can send a reflection through the surface or a refraction back: no such path.
+    if ((direction.dot(at.ng) > 0.0f) != (s->wi.z() > 0.0f)) return end;
     if (s->event == material::kRefraction || s->event == material::kLobeTransmission) {
       if (at.side == scene::Side::Front)
         media.enter(hit->material, shading.material(hit->material).extinction);
