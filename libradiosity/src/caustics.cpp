@@ -1,1 +1,115 @@
-namespace atrium::radiosity {}
+#include "follow.h"
+#include "passes.h"
+
+namespace atrium::radiosity {
+namespace {
+
+using scene::Counter;
+using scene::Counters;
+
+template <int N>
+struct Deposit {
+  SideIndex side;
+  Spectrum<N> flux;
+  Spectrum<N> body;  // flux * B(mu) / B-bar
+};
+
+/// What a batch of photons did; added up in the order of the batches.
+template <int N>
+struct Batch {
+  std::vector<Deposit<N>> deposits;
+  double escaped = 0.0, absorbed = 0.0, squares = 0.0;
+};
+
+template <int N>
+class PhotonTracer {
+ public:
+  explicit PhotonTracer(const Problem<N>& problem) : problem_(problem) {}
+
+  void trace(std::uint32_t photon, Batch<N>& batch, Counters& counters) const {
+    scene::Sampler sampler(problem_.options.seed ^ 0xca05U, 0, photon);
+    const float choice = sampler.next_1d();
+    const Vec2f position = sampler.next_2d();
+    const auto e = problem_.shading.lights().sample_emission(choice, position, sampler.next_2d());
+    if (!e) return;
+    double left = static_cast<double>(e->weight.mean());
+    const PathEnd<N> end = follow<N>(
+        problem_, {e->origin, e->direction}, e->weight, sampler, material::Transport::Flux,
+        Counter::RaysPhoton, counters,
+        [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& flux,
+            bool specular) {
+          left -= static_cast<double>(flux.mean());
+          if (!specular) return;
+          const SideIndex i = problem_.side_at(at.point, at.side);
+          if (i == kNoSide) return;
+          batch.deposits.push_back({i, flux, flux * at.bsdf.body_weight(wo.z())});
+        });
+    const double escaped = static_cast<double>(end.escaped.mean());
+    batch.escaped += escaped;
+    batch.absorbed += left - escaped;
+    batch.squares += left * left;
+  }
+
+ private:
+  const Problem<N>& problem_;
+};
+
+template <int N>
+void add_deposits(const Problem<N>& problem, const Batch<N>& batch, double photons,
+                  Photons<N>& result) {
+  for (const Deposit<N>& d : batch.deposits) {
+    const float scale = static_cast<float>(1.0 / (photons * static_cast<double>(problem.area(d.side))));
+    Irradiance<N>& e = result.caustic.irradiance;
+    e.plain[d.side] += d.flux * scale;
+    if (!e.body.empty()) e.body[d.side] += d.body * scale;
+    const float mean = d.flux.mean() * scale;
+    result.caustic.variance[d.side] += mean * mean;  // of a sum of independent arrivals
+  }
+}
+
+}  // namespace
+
+template <int N>
+Photons<N> trace_photons(const Problem<N>& problem, Work& work, Counters& counters) {
+  // Without specular surfaces only the flux balance needs some.
+  constexpr std::uint64_t kBalancePhotons = 32768;
+  constexpr std::size_t kGrain = 4096;
+  Photons<N> result{.caustic = Estimate<N>(problem.side_count(), problem.sides.any_coupled)};
+  if (problem.shading.lights().empty()) return result;
+  const std::uint64_t wanted = std::min<std::uint64_t>(
+      0xffffffffU, problem.specular ? std::max(kBalancePhotons, problem.options.caustic_photons)
+                                    : kBalancePhotons);
+  const PhotonTracer<N> tracer(problem);
+  std::vector<Batch<N>> batches((wanted + kGrain - 1) / kGrain);
+  std::vector<std::uint8_t> done(batches.size(), 0);
+  work.run(wanted, kGrain, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
+    Batch<N>& batch = batches[begin / kGrain];
+    for (std::size_t i = begin; i < end; ++i) tracer.trace(static_cast<std::uint32_t>(i), batch, c);
+    done[begin / kGrain] = 1;
+  });
+  std::uint64_t photons = 0;
+  for (std::size_t b = 0; b < batches.size(); ++b)
+    if (done[b] != 0) photons += std::min<std::uint64_t>(kGrain, wanted - b * kGrain);
+  if (photons == 0) return result;
+  const double n = static_cast<double>(photons);
+  double squares = 0.0;
+  for (const Batch<N>& batch : batches) {
+    add_deposits(problem, batch, n, result);
+    result.escaped += batch.escaped / n;
+    result.absorbed += batch.absorbed / n;
+    squares += batch.squares / n;
+  }
+  const double mean = result.escaped + result.absorbed;
+  result.variance = std::max(0.0, squares - mean * mean) / n;
+  return result;
+}
+
+#define ATRIUM_INSTANTIATE(N) \
+  template Photons<N> trace_photons(const Problem<N>&, Work&, Counters&);
+ATRIUM_INSTANTIATE(1)
+ATRIUM_INSTANTIATE(3)
+ATRIUM_INSTANTIATE(4)
+ATRIUM_INSTANTIATE(8)
+#undef ATRIUM_INSTANTIATE
+
+}  // namespace atrium::radiosity

@@ -1,1 +1,191 @@
-namespace atrium::radiosity {}
+#include "radiosity/elements.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "cutting.h"
+#include "facets.h"
+#include "material/material.h"
+#include "scene/parallel.h"
+
+namespace atrium::radiosity {
+namespace {
+
+using scene::ObjectId;
+using scene::Scene;
+using scene::SurfaceField;
+
+bool is_diffuse(const Scene& scene, std::size_t object) {
+  const material::MaterialTraits t = material::traits(scene.material_of(ObjectId(object)));
+  return t.diffuse_reflection || t.diffuse_transmission;
+}
+
+Corners object_corners(const Scene& scene, ObjectId id) {
+  Corners corners(scene.mesh_of(id).triangles.size());
+  for (std::size_t t = 0; t < corners.size(); ++t)
+    corners[t] = scene.corners(id, static_cast<std::uint32_t>(t));
+  return corners;
+}
+
+double triangle_area(const std::array<Vec3f, 3>& c) {
+  const Vec3d a = c[0].cast<double>();
+  const double area = 0.5 * (c[1].cast<double>() - a).cross(c[2].cast<double>() - a).norm();
+  return std::isfinite(area) ? area : 0.0;
+}
+
+/// Cells that a surface of this area gets; the cap keeps one huge plane from taking all of them.
+double cell_count(double area, double h, double cap) {
+  return std::max(1.0, std::min(area / (h * h), cap));
+}
+
+/// The cell size at which the surfaces need about `budget` elements.
+double solve_cell_size(const std::vector<double>& areas, double budget, double cap) {
+  double total = 0.0;
+  for (const double a : areas) total += a;
+  if (!(total > 0.0)) return 1.0;
+  double log_low = std::log(total) * 0.5 - 16.0;
+  double log_high = std::log(total) * 0.5 + 1.0;
+  for (int i = 0; i < 40; ++i) {
+    const double h = std::exp(0.5 * (log_low + log_high));
+    double count = 0.0;
+    for (const double a : areas) count += cell_count(a, h, cap);
+    (count > budget ? log_low : log_high) = std::log(h);
+  }
+  return std::exp(log_high);
+}
+
+struct ObjectPart {
+  std::vector<Facet> facets;
+  std::vector<CutFacet> cuts;
+  double area = 0.0;
+};
+
+class Builder {
+ public:
+  Builder(const Scene& scene, const ElementOptions& options)
+      : scene_(scene),
+        options_(options),
+        budget_(std::max(1U, options.max_elements)),
+        parts_(scene.objects.size()) {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (is_diffuse(scene, i)) objects_.push_back(i);
+  }
+
+  Elements build() {
+    measure_areas();
+    scene::parallel_for(objects_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) grow(objects_[k]);
+    });
+    limit_facets();
+    choose_final_size();
+    scene::parallel_for(objects_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) cut(objects_[k]);
+    });
+    return assemble();
+  }
+
+ private:
+  void measure_areas() {
+    std::vector<double> areas;
+    for (const std::size_t object : objects_) {
+      const ObjectId id(object);
+      for (std::uint32_t t = 0; t < scene_.mesh_of(id).triangles.size(); ++t)
+        parts_[object].area += triangle_area(scene_.corners(id, t));
+      areas.push_back(parts_[object].area);
+    }
+    cap_ = budget_ / 4.0;
+    cell_ = options_.element_size > 0.0 ? options_.element_size
+                                        : solve_cell_size(areas, budget_, cap_);
+  }
+
+  void grow(std::size_t object) {
+    const double cone = std::clamp(options_.normal_cone_deg, 0.0, 80.0) * std::numbers::pi / 180.0;
+    // A floor for the cone: normals of float corners of one plane differ by rounding.
+    const FacetOptions options{std::min(std::cos(cone), 1.0 - 1e-6), 0.5 * cell_};
+    parts_[object].facets = grow_facets(object_corners(scene_, ObjectId(object)), options);
+  }
+
+  /// Scenes of countless small parts would get an element for each: clumps in growing voxels.
+  void limit_facets() {
+    double voxel = cell_;
+    for (int round = 0; round < 8 && facet_count() > budget_ * 0.5; ++round, voxel *= 1.6)
+      for (const std::size_t object : objects_)
+        parts_[object].facets = merge_small_facets(std::move(parts_[object].facets), voxel, voxel);
+  }
+
+  double facet_count() const {
+    std::size_t count = 0;
+    for (const ObjectPart& p : parts_) count += p.facets.size();
+    return static_cast<double>(count);
+  }
+
+  void choose_final_size() {
+    if (options_.element_size > 0.0) return;
+    std::vector<double> areas;
+    for (const ObjectPart& p : parts_)
+      for (const Facet& f : p.facets) areas.push_back(f.clump ? 0.0 : f.area);
+    cell_ = solve_cell_size(areas, budget_, cap_);
+  }
+
+  void cut(std::size_t object) {
+    const Corners corners = object_corners(scene_, ObjectId(object));
+    for (const Facet& f : parts_[object].facets)
+      parts_[object].cuts.push_back(
+          cut_facet(corners, f, cell_, options_.element_size > 0.0 ? budget_ * 4.0 : cap_));
+  }
+
+  Elements assemble() {
+    Elements e;
+    SurfaceField& field = e.layout;
+    field.triangle_facet.assign(scene_.triangle_count(), SurfaceField::kNone);
+    e.first_piece.push_back(0);
+    for (const std::size_t object : objects_) {
+      for (std::size_t k = 0; k < parts_[object].cuts.size(); ++k)
+        append(e, object, parts_[object].facets[k], parts_[object].cuts[k]);
+      parts_[object] = {};
+    }
+    return e;
+  }
+
+  void append(Elements& e, std::size_t object, const Facet& facet, CutFacet& cut) {
+    SurfaceField& field = e.layout;
+    const auto facet_id = static_cast<std::uint32_t>(field.facets.size());
+    const auto first_element = static_cast<std::uint32_t>(field.element_facet.size());
+    cut.grid.first_cell = static_cast<std::uint32_t>(field.cell_element.size());
+    field.facets.push_back(cut.grid);
+    field.cell_element.resize(field.cell_element.size() + cut.cell_count(), SurfaceField::kNone);
+    for (const std::uint32_t t : facet.triangles)
+      field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
+    for (std::size_t k = 0; k < cut.element_cell.size(); ++k) {
+      const std::uint32_t cell = cut.element_cell[k];
+      field.cell_element[cut.grid.first_cell + cell] = first_element + static_cast<std::uint32_t>(k);
+      field.element_facet.push_back(facet_id);
+      field.element_cell.push_back(cell);
+      float area = 0.0f;
+      for (std::uint32_t p = cut.first_piece[k]; p < cut.first_piece[k + 1]; ++p) {
+        area += cut.pieces[p].area;
+        cut.pieces[p].object = ObjectId(object);
+        e.pieces.push_back(std::move(cut.pieces[p]));
+      }
+      field.element_area.push_back(area);
+      e.first_piece.push_back(static_cast<std::uint32_t>(e.pieces.size()));
+    }
+    cut.pieces = {};
+  }
+
+  const Scene& scene_;
+  ElementOptions options_;
+  double budget_;
+  double cap_ = 0.0;
+  double cell_ = 0.0;
+  std::vector<ObjectPart> parts_;
+  std::vector<std::size_t> objects_;
+};
+
+}  // namespace
+
+Elements make_elements(const Scene& scene, const ElementOptions& options) {
+  return Builder(scene, options).build();
+}
+
+}  // namespace atrium::radiosity

@@ -1,0 +1,68 @@
+#include "material/error.h"
+#include "solvers.h"
+
+namespace atrium::radiosity {
+namespace {
+
+/// Summed weight of a row, lane mean.
+template <int N>
+double row_sum(const Rows<N>& rows, std::size_t k) {
+  double sum = 0.0;
+  for (std::uint64_t e = rows.first[k]; e < rows.first[k + 1]; ++e) {
+    const auto& entry = rows.entries[e];
+    const bool chromatic = (entry.target & Rows<N>::kChromatic) != 0;
+    sum += static_cast<double>(entry.weight) *
+           (chromatic ? static_cast<double>(rows.spectral[entry.spectral].mean()) : 1.0);
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <int N>
+FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const Photons<N>& photons,
+                         const Rows<N>& rows) {
+  FluxBalance f{.emitted = static_cast<double>(problem.shading.lights().flux().mean()),
+                .absorbed = photons.absorbed,
+                .escaped = photons.escaped};
+  double variance = photons.variance;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (rows.rays[k] == 0) continue;
+    const SideIndex i = problem.sides.active[k];
+    const double rays = rows.rays[k];
+    const double exposed = rays / (rays + rows.dropped[k]);
+    const double area = static_cast<double>(problem.area(i)) * exposed;
+    const double b = static_cast<double>(leaving(problem.sides, i, total_exchange(problem, s, i),
+                                                 total_exchange(problem, s, i ^ 1U))
+                                             .mean());
+    const double escaped = static_cast<double>(rows.escaped[k]) / rays;
+    f.escaped += area * b * escaped;
+    f.absorbed += area * (absorbed_per_area(problem, s, i) +
+                          b * (1.0 - row_sum(rows, k) / rays - escaped));
+    variance += area * area *
+                static_cast<double>(s.direct.variance[i] + s.caustic.variance[i] +
+                                    s.indirect.variance[i]);
+  }
+  f.standard_error = std::sqrt(variance);
+  return f;
+}
+
+template <int N>
+void require_diffuse(const Problem<N>& problem, const char* solver) {
+  if (problem.specular)
+    throw Error(std::string("radiosity: solver '") + solver +
+                "' is for diffuse surfaces only and this scene has mirrors, glass or glossy "
+                "materials; use solver 'rows'");
+}
+
+#define ATRIUM_INSTANTIATE(N)                                                                \
+  template FluxBalance flux_balance(const Problem<N>&, const Solution<N>&, const Photons<N>&, \
+                                    const Rows<N>&);                                         \
+  template void require_diffuse(const Problem<N>&, const char*);
+ATRIUM_INSTANTIATE(1)
+ATRIUM_INSTANTIATE(3)
+ATRIUM_INSTANTIATE(4)
+ATRIUM_INSTANTIATE(8)
+#undef ATRIUM_INSTANTIATE
+
+}  // namespace atrium::radiosity

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "problem.h"
+
+namespace atrium::radiosity {
+
+/// Sparse hemisphere rows: row k belongs to active side k and says which sides it sees, with how
+/// many of its rays. Sums, not means: divide by rays[k].
+template <int N>
+struct Rows {
+  static constexpr std::uint32_t kChromatic = 0x80000000U;
+  struct Entry {
+    std::uint32_t target;  ///< SideIndex; with kChromatic, `weight` is not used
+    float weight;
+    float body;            ///< weight with B(mu) / B-bar of the receiver, for E_B
+    std::uint32_t spectral;  ///< index into `spectral` if chromatic
+  };
+  std::vector<std::uint64_t> first;      ///< active sides + 1
+  std::vector<Entry> entries;
+  std::vector<Spectrum<N>> spectral;     ///< weights that differ between lanes
+  std::vector<std::uint32_t> rays;       ///< valid ones, by active side
+  std::vector<std::uint32_t> dropped;    ///< origins inside closed bodies
+  std::vector<float> escaped;            ///< summed weight that left the scene, lane mean
+
+  [[nodiscard]] std::size_t size() const { return rays.size(); }
+  /// Sum over the row of weight * values[target].
+  [[nodiscard]] Spectrum<N> apply(std::size_t k, const SideValues<N>& values, bool body) const {
+    Spectrum<N> sum;
+    for (std::uint64_t e = first[k]; e < first[k + 1]; ++e) {
+      const Entry& entry = entries[e];
+      const float factor = body ? entry.body : entry.weight;
+      if ((entry.target & kChromatic) == 0)
+        sum += factor * values[entry.target];
+      else
+        sum += factor * (spectral[entry.spectral] * values[entry.target & ~kChromatic]);
+    }
+    return sum;
+  }
+};
+
+/// Traces rays [first_ray, last_ray) of every active side whose `wanted` is set and adds them to
+/// the rows of `old` (empty: none).
+template <int N>
+[[nodiscard]] Rows<N> trace_rows(const Problem<N>& problem, Rows<N> old,
+                                 const std::vector<std::uint8_t>& wanted, int first_ray,
+                                 int last_ray, Work& work, scene::Counters& counters);
+
+struct Iteration {
+  int iterations = 0;
+  double residual = 0.0;  ///< last change of radiosity, relative to its maximum
+  bool converged = false;
+};
+
+/// Solves I = constant + W (rho (source + I) + tau (source + I)_other side) for the exchange
+/// irradiance I of the active sides (E_B where coupled). `result` is the start value.
+/// \throws Error  if the light does not decay: a closed enclosure that reflects everything.
+template <int N>
+Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideValues<N>& source,
+                     const SideValues<N>& constant, SideValues<N>& result, Work& work);
+
+/// Radiosity that leaves each side given the exchange irradiance of all.
+template <int N>
+[[nodiscard]] Spectrum<N> leaving(const Sides<N>& sides, SideIndex i, const Spectrum<N>& own,
+                                  const Spectrum<N>& other) {
+  return sides.reflectance[i] * own + sides.transmittance[i] * other;
+}
+
+}  // namespace atrium::radiosity

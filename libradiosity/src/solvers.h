@@ -1,0 +1,75 @@
+#pragma once
+
+#include "passes.h"
+
+namespace atrium::radiosity {
+
+/// What a solver hands over: irradiance by side and how it got there.
+template <int N>
+struct Solution {
+  Estimate<N> direct, caustic, indirect;
+  std::vector<std::uint8_t> valid;  ///< by side
+  FluxBalance flux;
+  Iteration iteration;
+  double error_estimate = 0.0;
+
+  explicit Solution(const Problem<N>& problem)
+      : direct(problem.side_count(), problem.sides.any_coupled),
+        caustic(problem.side_count(), problem.sides.any_coupled),
+        indirect(problem.side_count(), problem.sides.any_coupled),
+        valid(problem.sides.is_active) {}
+};
+
+template <int N>
+[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Work& work,
+                                          scene::Counters& counters);
+/// \throws Error  if the scene has specular surfaces or more sides than a dense matrix can hold.
+template <int N>
+[[nodiscard]] Solution<N> solve_with_matrix(const Problem<N>& problem, Work& work,
+                                            scene::Counters& counters);
+/// \throws Error  if the scene has specular surfaces.
+template <int N>
+[[nodiscard]] Solution<N> solve_with_shooting(const Problem<N>& problem, Work& work,
+                                              scene::Counters& counters);
+
+/// E_B where coupled, else E.
+template <int N>
+[[nodiscard]] const Spectrum<N>& exchange(const Problem<N>& problem, const Irradiance<N>& e,
+                                          SideIndex i) {
+  return problem.sides.coupled[i / 2] != 0 ? e.body[i] : e.plain[i];
+}
+
+/// Irradiance of all origins.
+template <int N>
+[[nodiscard]] Spectrum<N> total_plain(const Solution<N>& s, SideIndex i) {
+  return s.direct.irradiance.plain[i] + s.caustic.irradiance.plain[i] +
+         s.indirect.irradiance.plain[i];
+}
+template <int N>
+[[nodiscard]] Spectrum<N> total_exchange(const Problem<N>& problem, const Solution<N>& s,
+                                         SideIndex i) {
+  return exchange(problem, s.direct.irradiance, i) + exchange(problem, s.caustic.irradiance, i) +
+         exchange(problem, s.indirect.irradiance, i);
+}
+
+/// Flux per area [lane mean] that no diffuse part of a side sends on.
+template <int N>
+[[nodiscard]] double absorbed_per_area(const Problem<N>& problem, const Solution<N>& s,
+                                       SideIndex i) {
+  const Spectrum<N> kept =
+      total_plain(s, i) - (problem.sides.reflectance[i] + problem.sides.transmittance[i ^ 1U]) *
+                              total_exchange(problem, s, i);
+  return static_cast<double>(kept.mean());
+}
+
+/// Absorbed: at diffuse surfaces by their irradiance, elsewhere by what paths lost. Escaped: by
+/// rays that left. Neither is made from the other or from what the lights emit.
+template <int N>
+[[nodiscard]] FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& solution,
+                                       const Photons<N>& photons, const Rows<N>& rows);
+
+/// \throws Error  naming the solver if something mirrors, refracts or glosses.
+template <int N>
+void require_diffuse(const Problem<N>& problem, const char* solver);
+
+}  // namespace atrium::radiosity

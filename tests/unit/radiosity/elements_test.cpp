@@ -1,0 +1,160 @@
+#include "radiosity/elements.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "unit/radiosity/box_scene.h"
+
+namespace atrium::radiosity {
+namespace {
+
+using scene::ObjectId;
+using scene::Scene;
+using test::SceneMaker;
+
+double area_of(const Elements& e) {
+  double sum = 0.0;
+  for (const float a : e.layout.element_area) sum += static_cast<double>(a);
+  return sum;
+}
+
+// Every piece lies in its triangle's element: the centre of a piece is found again.
+void expect_lookup_agrees(const Scene& scene, const Elements& e) {
+  for (std::uint32_t i = 0; i < e.layout.element_count(); ++i)
+    for (std::uint32_t p = e.first_piece[i]; p < e.first_piece[i + 1]; ++p) {
+      const ElementPiece& piece = e.pieces[p];
+      Vec3f centre = Vec3f::Zero();
+      for (const Vec3f& c : piece.corners) centre += c;
+      centre /= static_cast<float>(piece.corners.size());
+      EXPECT_EQ(e.layout.element_at(scene, piece.object, piece.triangle, centre), i);
+    }
+}
+
+TEST(Elements, RectangleIsCutIntoWholeCells) {
+  SceneMaker maker;
+  const auto m = maker.material(test::diffuse(0.5));
+  maker.quad(m, {0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0});
+  const Scene scene = maker.take();
+  const Elements e = make_elements(scene, {.element_size = 0.5});
+  ASSERT_EQ(e.layout.facets.size(), 1U);
+  EXPECT_EQ(e.layout.element_count(), 48U);
+  for (const float a : e.layout.element_area) EXPECT_NEAR(a, 0.25f, 1e-5f);
+  expect_lookup_agrees(scene, e);
+}
+
+TEST(Elements, TriangulationDoesNotMatter) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> inside(0.5f, 2.5f);
+  SceneMaker maker;
+  const auto m = maker.material(test::diffuse(0.5));
+  // A fan around a random inner point.
+  const Vec3f centre(inside(random), inside(random), 0);
+  maker.object(m, {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, centre},
+               {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
+  const Scene scene = maker.take();
+  const Elements e = make_elements(scene, {.element_size = 0.3});
+  EXPECT_EQ(e.layout.facets.size(), 1U);
+  EXPECT_EQ(e.layout.element_count(), 100U);
+  EXPECT_NEAR(area_of(e), 9.0, 1e-4);
+  expect_lookup_agrees(scene, e);
+}
+
+TEST(Elements, SphereClustersTrianglesAndKeepsItsArea) {
+  SceneMaker maker;
+  maker.sphere(maker.material(test::diffuse(0.5)), 1.0f, 5, false);
+  const Scene scene = maker.take();
+  double area = 0.0;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const auto c = scene.corners(ObjectId(0U), t);
+    area += 0.5 * static_cast<double>((c[1] - c[0]).cross(c[2] - c[0]).norm());
+  }
+  const Elements e = make_elements(scene, {.element_size = 0.5});
+  EXPECT_LT(e.layout.facets.size(), scene.triangle_count() / 20);
+  EXPECT_NEAR(area_of(e), area, 1e-4 * area);
+  for (const std::uint32_t f : e.layout.triangle_facet) EXPECT_NE(f, scene::SurfaceField::kNone);
+  expect_lookup_agrees(scene, e);
+}
+
+TEST(Elements, BudgetIsKept) {
+  SceneMaker maker;
+  const auto m = maker.material(test::diffuse(0.5));
+  maker.room({0, 0, 0}, {6, 4, 3}, m);
+  maker.quad(m, {-1000, -1000, -1}, {1000, -1000, -1}, {1000, 1000, -1}, {-1000, 1000, -1});
+  const Elements e = make_elements(maker.take(), {.max_elements = 8000});
+  EXPECT_GT(e.layout.element_count(), 5000U);
+  EXPECT_LT(e.layout.element_count(), 10000U);
+  // The plane of 4 km^2 gets at most a quarter; the room of 108 m^2 keeps small elements.
+  std::size_t room = 0;
+  for (const float a : e.layout.element_area) room += a < 1.0f ? 1U : 0U;
+  EXPECT_GT(room, 4000U);
+}
+
+TEST(Elements, ThousandsOfSeparateScrapsAreGathered) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(0.0f, 1.0f);
+  std::vector<Vec3f> p;
+  std::vector<scene::Triangle> t;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    const Vec3f at(place(random), place(random), place(random));
+    for (int k = 0; k < 3; ++k)
+      p.emplace_back(at + 0.01f * Vec3f(place(random), place(random), place(random)));
+    t.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  SceneMaker maker;
+  maker.object(maker.material(test::diffuse(0.5)), p, t);
+  const Scene scene = maker.take();
+  const Elements e = make_elements(scene, {.max_elements = 2000});
+  EXPECT_LE(e.layout.element_count(), 2000U);
+  EXPECT_EQ(e.pieces.size(), 20000U);
+}
+
+// Zero area, repeated and non-finite corners, three triangles on an edge, a flipped neighbour.
+TEST(Elements, DegenerateInputIsSurvived) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  SceneMaker maker;
+  maker.object(maker.material(test::diffuse(0.5)),
+               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0.5f, 0, 1}, {2, 0, 0}, {nan, 0, 0}},
+               {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 1, 5}, {0, 0, 1}, {0, 1, 6}, {0, 1, 2}});
+  const Scene scene = maker.take();
+  const Elements e = make_elements(scene, {.element_size = 0.25});
+  // Four proper triangles (one of them twice): 0.5 m^2 each.
+  EXPECT_NEAR(area_of(e), 2.0, 1e-4);
+  for (const int t : {3, 4, 5})
+    EXPECT_EQ(e.layout.triangle_facet[static_cast<std::size_t>(t)], scene::SurfaceField::kNone);
+}
+
+TEST(Elements, LongSliverFillsCellsAlongItsWay) {
+  SceneMaker maker;
+  maker.object(maker.material(test::diffuse(0.5)), {{0, 0, 0}, {100, 0, 0}, {100, 0.001f, 0}}, {{0, 1, 2}});
+  const Scene scene = maker.take();
+  const Elements e = make_elements(scene, {.element_size = 1.0});
+  EXPECT_EQ(e.layout.element_count(), 100U);
+  EXPECT_NEAR(area_of(e), 0.05, 1e-6);
+}
+
+TEST(Elements, SurfacesThatAreNotDiffuseGetNone) {
+  SceneMaker maker;
+  material::Material mirror;
+  mirror.k_df = 0.0;
+  mirror.k_rg = 1.0;
+  maker.quad(maker.material(mirror), {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  EXPECT_TRUE(make_elements(maker.take()).layout.empty());
+}
+
+TEST(Elements, InstancesAreCutWhereTheyStand) {
+  SceneMaker maker;
+  maker.quad(maker.material(test::diffuse(0.5)), {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  Scene scene = maker.take();
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].first_triangle = 2;
+  for (scene::Object& o : scene.objects) o.instanced = true;
+  scene.objects[1].to_scene = Eigen::Translation3f(5, 0, 0) * Eigen::Scaling(2.0f);
+  const Elements e = make_elements(scene, {.element_size = 0.5});
+  EXPECT_EQ(e.layout.element_count(), 4U + 16U);
+  EXPECT_NEAR(area_of(e), 5.0, 1e-5);
+  expect_lookup_agrees(scene, e);
+}
+
+}  // namespace
+}  // namespace atrium::radiosity
