@@ -8,7 +8,9 @@ function(atrium_compile_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE ${ATRIUM_WARNINGS}
-                         $<$<BOOL:${ATRIUM_WARNINGS_AS_ERRORS}>:-Werror>)
+                         $<$<BOOL:${ATRIUM_WARNINGS_AS_ERRORS}>:-Werror>
+                         # Lets ccache see through precompiled headers; without it nothing is cached.
+                         $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endfunction()
 
 function(atrium_add_library name)
