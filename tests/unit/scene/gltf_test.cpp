@@ -27,7 +27,8 @@ std::string error_of(const std::string& text, const std::string& name = "test.gl
   return {};
 }
 
-void expect_error(const std::string& text, const std::string& part, const std::string& name = "test.gltf") {
+void expect_error(const std::string& text, const std::string& part,
+                  const std::string& name = "test.gltf") {
   const std::string message = error_of(text, name);
   EXPECT_NE(message.find(part), std::string::npos) << "message: '" << message << "'";
 }
@@ -50,7 +51,9 @@ void expect_unit_triangle(const Model& model) {
 
 constexpr const char* kVec3 = R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})";
 
-TEST(GltfAccessor, NonIndexedTriangleFromADataUri) { expect_unit_triangle(read_text(test::triangle_gltf())); }
+TEST(GltfAccessor, NonIndexedTriangleFromADataUri) {
+  expect_unit_triangle(read_text(test::triangle_gltf()));
+}
 
 TEST(GltfAccessor, BinaryContainer) {
   const Bytes bin = Bytes().add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -73,19 +76,22 @@ TEST(GltfAccessor, ExternalBufferWithPercentEncodedName) {
 
 TEST(GltfAccessor, IndicesOfEveryWidth) {
   const auto indexed = [](const Bytes& buffer, int type, std::size_t bytes) {
-    return test::gltf_json(buffer,
-                           R"({"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":)" +
-                               std::to_string(bytes) + "}",
-                           std::string(kVec3) + R"(,{"bufferView":1,"componentType":)" + std::to_string(type) +
-                               R"(,"count":3,"type":"SCALAR"})",
-                           R"("attributes":{"POSITION":0},"indices":1)");
+    return test::gltf_json(
+        buffer,
+        R"({"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":)" +
+            std::to_string(bytes) + "}",
+        std::string(kVec3) + R"(,{"bufferView":1,"componentType":)" + std::to_string(type) +
+            R"(,"count":3,"type":"SCALAR"})",
+        R"("attributes":{"POSITION":0},"indices":1)");
   };
   const Bytes xyz = Bytes().add<float>({0, 1, 0, 0, 0, 0, 1, 0, 0});
   expect_unit_triangle(read_text(indexed(Bytes(xyz).add<std::uint8_t>({1, 2, 0}), 5121, 3)));
   expect_unit_triangle(read_text(indexed(Bytes(xyz).add<std::uint16_t>({1, 2, 0}), 5123, 6)));
   expect_unit_triangle(read_text(indexed(Bytes(xyz).add<std::uint32_t>({1, 2, 0}), 5125, 12)));
-  expect_error(indexed(Bytes(xyz).add<std::uint16_t>({1, 2, 3}), 5123, 6), "accessor 1: index 3 is out of range");
-  expect_error(indexed(Bytes(xyz).add<std::uint32_t>({1, 2, 0xFFFFFFFFu}), 5125, 12), "out of range");
+  expect_error(indexed(Bytes(xyz).add<std::uint16_t>({1, 2, 3}), 5123, 6),
+               "accessor 1: index 3 is out of range");
+  expect_error(indexed(Bytes(xyz).add<std::uint32_t>({1, 2, 0xFFFFFFFFu}), 5125, 12),
+               "out of range");
   expect_error(indexed(Bytes(xyz).add<float>({1, 2, 0}), 5126, 12), "unsigned");
 }
 
@@ -108,18 +114,20 @@ TEST(GltfAccessor, StridesAndOffsets) {
 
 // glTF 2.0, 3.11: c / 255, c / 65535, max(c / 127, -1), max(c / 32767, -1).
 TEST(GltfAccessor, NormalisedIntegers) {
-  const Bytes buffer = Bytes()
-                           .add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})
-                           .add<std::uint8_t>({255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 255, 0})     // colours, 4 apart
-                           .add<std::uint16_t>({65535, 0, 13107, 65535, 0, 0})               // uv
-                           .add<std::int8_t>({127, -128, 0, 0, -127, 0, 0, 0, 0, 0, 127, 0});  // normals
+  const Bytes buffer =
+      Bytes()
+          .add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})
+          .add<std::uint8_t>({255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 255, 0})     // colours, 4 apart
+          .add<std::uint16_t>({65535, 0, 13107, 65535, 0, 0})                 // uv
+          .add<std::int8_t>({127, -128, 0, 0, -127, 0, 0, 0, 0, 0, 127, 0});  // normals
   const Model model = read_text(test::gltf_json(
       buffer,
       R"({"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12,"byteStride":4},)"
       R"({"buffer":0,"byteOffset":48,"byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":12,"byteStride":4})",
-      std::string(kVec3) + R"(,{"bufferView":1,"componentType":5121,"normalized":true,"count":3,"type":"VEC3"},)"
-                           R"({"bufferView":2,"componentType":5123,"normalized":true,"count":3,"type":"VEC2"},)"
-                           R"({"bufferView":3,"componentType":5120,"normalized":true,"count":3,"type":"VEC3"})",
+      std::string(kVec3) +
+          R"(,{"bufferView":1,"componentType":5121,"normalized":true,"count":3,"type":"VEC3"},)"
+          R"({"bufferView":2,"componentType":5123,"normalized":true,"count":3,"type":"VEC2"},)"
+          R"({"bufferView":3,"componentType":5120,"normalized":true,"count":3,"type":"VEC3"})",
       R"("attributes":{"POSITION":0,"COLOR_0":1,"TEXCOORD_0":2,"NORMAL":3})"));
   const MeshData& mesh = model.meshes.at(0);
   ASSERT_EQ(mesh.colors.size(), 3u);
@@ -138,11 +146,13 @@ TEST(GltfAccessor, QuantisedPositions) {
   const Bytes buffer = Bytes().add<std::int16_t>({0, 0, 0, 0, 1000, 0, 0, 0, 0, 1000, 0, 0});
   const Model model = read_text(test::gltf_json(
       buffer, R"({"buffer":0,"byteLength":24,"byteStride":8})",
-      R"({"bufferView":0,"componentType":5122,"count":3,"type":"VEC3"})", R"("attributes":{"POSITION":0})",
+      R"({"bufferView":0,"componentType":5122,"count":3,"type":"VEC3"})",
+      R"("attributes":{"POSITION":0})",
       R"(,"extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"])",
       R"("mesh":0,"scale":[0.001,0.001,0.001])"));
   ASSERT_EQ(model.nodes.size(), 1u);
-  EXPECT_LT((model.nodes[0].to_world * model.meshes[0].positions[1] - Vec3d(1, 0, 0)).norm(), 1e-15);
+  EXPECT_LT((model.nodes[0].to_world * model.meshes[0].positions[1] - Vec3d(1, 0, 0)).norm(),
+            1e-15);
   EXPECT_TRUE(model.warnings.size() == 1u && warns(model, "without a material"));
 }
 
@@ -154,11 +164,13 @@ TEST(GltfAccessor, SparseOnDataAndOnZeros) {
   const std::string views =
       R"({"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":4},{"buffer":0,"byteOffset":40,"byteLength":24})";
   const auto accessor = [](const std::string& base, int count) {
-    return "{" + base + R"("componentType":5126,"count":3,"type":"VEC3","sparse":{"count":)" + std::to_string(count) +
+    return "{" + base + R"("componentType":5126,"count":3,"type":"VEC3","sparse":{"count":)" +
+           std::to_string(count) +
            R"(,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":2}}})";
   };
   const std::string primitive = R"("attributes":{"POSITION":0})";
-  expect_unit_triangle(read_text(test::gltf_json(buffer, views, accessor(R"("bufferView":0,)", 1), primitive)));
+  expect_unit_triangle(
+      read_text(test::gltf_json(buffer, views, accessor(R"("bufferView":0,)", 1), primitive)));
   expect_unit_triangle(read_text(test::gltf_json(buffer, views, accessor("", 2), primitive)));
   expect_error(test::gltf_json(buffer, views, accessor("", 4), primitive), "accessor 0");
   expect_error(test::gltf_json(buffer, views, accessor("", 3), primitive), "do not fit");
@@ -171,30 +183,42 @@ TEST(GltfAccessor, RangesAreChecked) {
   const auto count = [](const std::string& n) {
     return R"({"bufferView":0,"componentType":5126,"count":)" + n + R"(,"type":"VEC3"})";
   };
-  expect_error(test::gltf_json(buffer, view, count("4"), primitive), "accessor 0: 4 elements do not fit");
+  expect_error(test::gltf_json(buffer, view, count("4"), primitive),
+               "accessor 0: 4 elements do not fit");
   expect_error(test::gltf_json(buffer, view, count("4000000000"), primitive), "do not fit");
-  expect_error(test::gltf_json(buffer, view, count("18446744073709551615"), primitive), "do not fit");
-  expect_error(test::gltf_json(buffer, R"({"buffer":0,"byteLength":37})", count("3"), primitive), "reaches beyond");
-  expect_error(test::gltf_json(buffer, R"({"buffer":0,"byteOffset":18446744073709551612,"byteLength":36})",
-                               count("3"), primitive), "reaches beyond");
-  expect_error(test::gltf_json(buffer, R"({"buffer":7,"byteLength":36})", count("3"), primitive), "buffer 7");
+  expect_error(test::gltf_json(buffer, view, count("18446744073709551615"), primitive),
+               "do not fit");
+  expect_error(test::gltf_json(buffer, R"({"buffer":0,"byteLength":37})", count("3"), primitive),
+               "reaches beyond");
+  expect_error(
+      test::gltf_json(buffer, R"({"buffer":0,"byteOffset":18446744073709551612,"byteLength":36})",
+                      count("3"), primitive),
+      "reaches beyond");
+  expect_error(test::gltf_json(buffer, R"({"buffer":7,"byteLength":36})", count("3"), primitive),
+               "buffer 7");
   expect_error(test::gltf_json(buffer, view,
-                               R"({"bufferView":9,"componentType":5126,"count":3,"type":"VEC3"})", primitive),
+                               R"({"bufferView":9,"componentType":5126,"count":3,"type":"VEC3"})",
+                               primitive),
                "bufferView 9 does not exist");
-  expect_error(test::gltf_json(buffer, view, R"({"componentType":5126,"count":4000000000,"type":"VEC3"})", primitive),
-               "without data");
+  expect_error(
+      test::gltf_json(buffer, view, R"({"componentType":5126,"count":4000000000,"type":"VEC3"})",
+                      primitive),
+      "without data");
   expect_error(test::gltf_json(buffer, view, count("3"), R"("attributes":{"POSITION":5})"),
                "accessor 5 does not exist");
-  expect_error(test::gltf_json(buffer, view, R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"})",
-                               primitive), "components");
+  expect_error(test::gltf_json(buffer, view,
+                               R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"})",
+                               primitive),
+               "components");
 }
 
 TEST(GltfPrimitive, StripsAndFansKeepTheWinding) {
   // A unit square: as a strip 0 1 2 3 in z order, as a fan in ring order. Both face +z.
   const auto square = [](const Bytes& buffer, int mode) {
-    return read_text(test::gltf_json(buffer, R"({"buffer":0,"byteLength":48})",
-                                     R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"})",
-                                     R"("attributes":{"POSITION":0},"mode":)" + std::to_string(mode)));
+    return read_text(
+        test::gltf_json(buffer, R"({"buffer":0,"byteLength":48})",
+                        R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"})",
+                        R"("attributes":{"POSITION":0},"mode":)" + std::to_string(mode)));
   };
   const Model strip = square(Bytes().add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}), 5);
   const Model fan = square(Bytes().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}), 6);
@@ -202,11 +226,13 @@ TEST(GltfPrimitive, StripsAndFansKeepTheWinding) {
     const MeshData& mesh = model->meshes.at(0);
     ASSERT_EQ(mesh.triangles.size(), 2u);
     for (const Triangle& t : mesh.triangles) {
-      const Vec3d cross = (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
+      const Vec3d cross = (mesh.positions[t[1]] - mesh.positions[t[0]])
+                              .cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
       EXPECT_EQ(cross, Vec3d(0, 0, 1));
     }
   }
-  EXPECT_TRUE(warns(square(Bytes().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}), 1), "lines are ignored"));
+  EXPECT_TRUE(warns(square(Bytes().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}), 1),
+                    "lines are ignored"));
 }
 
 TEST(GltfNodes, ChainsMultiplyInDoublePrecision) {
@@ -220,8 +246,8 @@ TEST(GltfNodes, ChainsMultiplyInDoublePrecision) {
 }
 
 TEST(GltfNodes, MatrixIsColumnMajor) {
-  const Model model =
-      read_text(test::triangle_gltf("", "", R"("mesh":0,"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,5,6,7,1])"));
+  const Model model = read_text(
+      test::triangle_gltf("", "", R"("mesh":0,"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,5,6,7,1])"));
   EXPECT_EQ(Vec3d(model.nodes.at(0).to_world * Vec3d(1, 0, 0)), Vec3d(5, 7, 7));
 }
 
@@ -233,11 +259,15 @@ TEST(GltfNodes, MeshesAreReadOnceHoweverOftenShown) {
 }
 
 TEST(GltfNodes, CyclesAndSharedChildrenAreRefused) {
-  expect_error(test::triangle_gltf("", "", R"("children":[1]},{"mesh":0,"children":[0])"), "reached twice");
-  expect_error(test::triangle_gltf("", "", R"("children":[0],"mesh":0)"), "node 0 is reached twice");
-  expect_error(test::triangle_gltf("", "", R"("children":[1,2]},{"children":[3]},{"children":[3]},{"mesh":0)"),
+  expect_error(test::triangle_gltf("", "", R"("children":[1]},{"mesh":0,"children":[0])"),
+               "reached twice");
+  expect_error(test::triangle_gltf("", "", R"("children":[0],"mesh":0)"),
+               "node 0 is reached twice");
+  expect_error(test::triangle_gltf(
+                   "", "", R"("children":[1,2]},{"children":[3]},{"children":[3]},{"mesh":0)"),
                "node 3 is reached twice");
-  expect_error(test::triangle_gltf("", "", R"("children":[17],"mesh":0)"), "node 17 does not exist");
+  expect_error(test::triangle_gltf("", "", R"("children":[17],"mesh":0)"),
+               "node 17 does not exist");
   expect_error(test::triangle_gltf("", "", R"("mesh":3)"), "mesh 3 does not exist");
 }
 
@@ -256,7 +286,8 @@ TEST(GltfNodes, CamerasIgnoreScale) {
       R"(,"cameras":[{"name":"a","type":"perspective","perspective":{"yfov":0.7,"aspectRatio":1.5,"znear":0.1}},)"
       R"({"type":"orthographic","orthographic":{"xmag":4,"ymag":2,"znear":0,"zfar":9}}])";
   const Model model = read_text(test::triangle_gltf(
-      camera, "", R"("mesh":0,"children":[1,2]},{"camera":0,"scale":[3,3,-3],"translation":[1,2,3]},{"name":"plan","camera":1)"));
+      camera, "",
+      R"("mesh":0,"children":[1,2]},{"camera":0,"scale":[3,3,-3],"translation":[1,2,3]},{"name":"plan","camera":1)"));
   ASSERT_EQ(model.cameras.size(), 2u);
   EXPECT_EQ(model.cameras[0].name, "a");
   EXPECT_EQ(model.cameras[0].yfov, 0.7);
@@ -267,8 +298,10 @@ TEST(GltfNodes, CamerasIgnoreScale) {
   EXPECT_EQ(model.cameras[1].height, 4.0);
   EXPECT_EQ(model.cameras[1].aspect, 2.0);
   EXPECT_EQ(model.cameras[1].name, "plan");
-  expect_error(test::triangle_gltf(R"(,"cameras":[{"type":"perspective","perspective":{"yfov":-1,"znear":0.1}}])", "",
-                                   R"("mesh":0,"camera":0)"), "yfov");
+  expect_error(test::triangle_gltf(
+                   R"(,"cameras":[{"type":"perspective","perspective":{"yfov":-1,"znear":0.1}}])",
+                   "", R"("mesh":0,"camera":0)"),
+               "yfov");
 }
 
 TEST(GltfNodes, PunctualLights) {
@@ -277,9 +310,13 @@ TEST(GltfNodes, PunctualLights) {
       R"({"type":"point","intensity":100,"color":[1,0.5,0.25]},)"
       R"({"type":"spot","intensity":7,"spot":{"innerConeAngle":0.1,"outerConeAngle":0.4}},)"
       R"({"type":"directional","intensity":1000}]}})";
-  const auto node = [](int i) { return R"({"extensions":{"KHR_lights_punctual":{"light":)" + std::to_string(i) + "}}}"; };
-  const Model model = read_text(test::triangle_gltf(
-      lights, "", R"("mesh":0,"children":[1,2,3]},)" + node(0) + "," + node(1) + "," + node(2).substr(0, node(2).size() - 1)));
+  const auto node = [](int i) {
+    return R"({"extensions":{"KHR_lights_punctual":{"light":)" + std::to_string(i) + "}}}";
+  };
+  const Model model =
+      read_text(test::triangle_gltf(lights, "",
+                                    R"("mesh":0,"children":[1,2,3]},)" + node(0) + "," + node(1) +
+                                        "," + node(2).substr(0, node(2).size() - 1)));
   ASSERT_EQ(model.lights.size(), 3u);
   const Rgb intensity = std::get<Rgb>(std::get<PointLight>(model.lights[0].kind).intensity);
   EXPECT_EQ(intensity, make_rgb(100, 50, 25));
@@ -296,11 +333,14 @@ TEST(GltfFile, BrokenFilesSayWhatIsWrong) {
   EXPECT_FALSE(error_of("{").empty());
   EXPECT_FALSE(error_of("[]").empty());
   EXPECT_FALSE(error_of("hello, world").empty());
-  EXPECT_FALSE(error_of(R"({"asset":{"version":"2.0"},"meshes":7,"nodes":"x","scenes":[{"nodes":[0]}]})").empty());
+  EXPECT_FALSE(
+      error_of(R"({"asset":{"version":"2.0"},"meshes":7,"nodes":"x","scenes":[{"nodes":[0]}]})")
+          .empty());
   expect_error(R"({"asset":{"version":"1.0"}})", "version");
   expect_error(std::string(5000, '['), "nested");
   const std::string whole = test::glb(test::triangle_gltf(), "1234");
-  for (const std::size_t size : {std::size_t{4}, std::size_t{12}, std::size_t{19}, std::size_t{100}, whole.size() - 5}) {
+  for (const std::size_t size :
+       {std::size_t{4}, std::size_t{12}, std::size_t{19}, std::size_t{100}, whole.size() - 5}) {
     SCOPED_TRACE(size);
     EXPECT_FALSE(error_of(whole.substr(0, size), "test.glb").empty());
   }
@@ -316,7 +356,8 @@ TEST(GltfFile, MissingThings) {
   const TempDir folder;
   EXPECT_THROW(static_cast<void>(read_model({folder.write("a.fbx", "x")})), Error);
   EXPECT_THROW(static_cast<void>(read_model({folder.path()})), Error);
-  expect_error(test::triangle_gltf(R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"), "draco");
+  expect_error(test::triangle_gltf(R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"),
+               "draco");
 }
 
 TEST(GltfFile, TruncationsAndFlippedBytesNeverCrash) {
@@ -370,7 +411,8 @@ TEST(GltfMaterial, MetalHasTheBaseColourAsItsReflectanceAtNormalIncidence) {
 }
 
 TEST(GltfMaterial, PerfectMirrorStaysFinite) {
-  const Material m = material_of(R"("pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0})");
+  const Material m =
+      material_of(R"("pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0})");
   EXPECT_TRUE(m.smooth());
   EXPECT_TRUE(std::get<Rgb>(m.kappa).is_finite());
   EXPECT_GT(std::get<Rgb>(m.n).min(), 0.0f);
@@ -394,7 +436,8 @@ TEST(GltfMaterial, PartialMetalKeepsTheMixOfF0) {
   for (int i = 0; i < 3; ++i) {
     const double n = static_cast<double>(std::get<Rgb>(m.n)[i]);
     EXPECT_NEAR(std::pow((n - 1) / (n + 1), 2), 0.75 * 0.04 + 0.25 * base[i], 1e-6);
-    EXPECT_NEAR(static_cast<double>(std::get<Rgb>(m.body_reflectance.value())[i]), 0.75 * base[i], 1e-6);
+    EXPECT_NEAR(static_cast<double>(std::get<Rgb>(m.body_reflectance.value())[i]), 0.75 * base[i],
+                1e-6);
   }
 }
 
@@ -424,15 +467,35 @@ TEST(GltfMaterial, SolidGlassWithVolume) {
   EXPECT_EQ(left[2], 1.0f);
 }
 
-TEST(GltfMaterial, PartialTransmissionIsALinearMix) {
+// A body that transmits in part is the linear mix of glass and a Lambertian surface.
+TEST(GltfMaterial, PartlyTransmittingSolid) {
   const Material m = material_of(
-      R"("pbrMetallicRoughness":{"baseColorFactor":[0.6,0.6,0.6,1],"metallicFactor":0,"roughnessFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75}})");
+      R"("pbrMetallicRoughness":{"baseColorFactor":[0.6,0.6,0.6,1],"metallicFactor":0,"roughnessFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75},"KHR_materials_volume":{"thicknessFactor":1}})");
   EXPECT_EQ(m.k_rg, 0.75);
   EXPECT_EQ(m.k_tp_rg, 0.75);
   EXPECT_EQ(m.k_df, 0.25);
   EXPECT_EQ(m.k_tp_df, 0.25);
   EXPECT_EQ(std::get<double>(m.body_transmittance.value()), 0.0);
   EXPECT_NEAR(std::get<double>(m.body_reflectance.value()), 0.6, 1e-7);
+  material::validate(m, "test");
+}
+
+// Thin sheets: above one half a pane with the share in its tint, below a translucent sheet.
+TEST(GltfMaterial, PartlyTransmittingSheet) {
+  const auto sheet = [](const std::string& t) {
+    return material_of(
+        R"("pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0,"roughnessFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":)" +
+        t + "}}");
+  };
+  const Material clear = sheet("0.75");
+  EXPECT_EQ(clear.medium, Material::Medium::Pane);
+  EXPECT_EQ(std::get<double>(clear.transmission_tint), 0.375);
+  material::validate(clear, "test");
+  const Material dull = sheet("0.25");
+  EXPECT_EQ(dull.medium, Material::Medium::Opaque);
+  EXPECT_EQ(std::get<double>(dull.body_reflectance.value()), 0.375);
+  EXPECT_EQ(std::get<double>(dull.body_transmittance.value()), 0.125);
+  material::validate(dull, "test");
 }
 
 TEST(GltfMaterial, Emission) {
@@ -443,7 +506,8 @@ TEST(GltfMaterial, Emission) {
   EXPECT_FALSE(m.emits_both_sides);
   EXPECT_TRUE(material_of(json + R"(,"doubleSided":true)").emits_both_sides);
   const TempDir folder;
-  const Model scaled = read_model({folder.write("a.gltf", test::material_gltf(json))}, {.emissive_nits_per_unit = 179.0});
+  const Model scaled = read_model({folder.write("a.gltf", test::material_gltf(json))},
+                                  {.emissive_nits_per_unit = 179.0});
   EXPECT_EQ(std::get<Rgb>(scaled.materials.at(0).emission), make_rgb(40 * 179, 20 * 179, 10 * 179));
 }
 
@@ -455,12 +519,11 @@ TEST(GltfMaterial, UnlitEmitsItsColourAndReflectsNothing) {
   EXPECT_EQ(m.k_rg, 0.0);
 }
 
-TEST(GltfMaterial, BlendWithConstantAlphaBecomesAPane) {
+TEST(GltfMaterial, BlendWithConstantAlphaBecomesASheet) {
   const Material m = material_of(
       R"("pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,0.25],"metallicFactor":0},"alphaMode":"BLEND")");
   EXPECT_EQ(m.medium, Material::Medium::Pane);
-  EXPECT_EQ(m.k_tp_rg, 0.75);
-  EXPECT_EQ(m.k_df, 0.25);
+  EXPECT_EQ(std::get<double>(m.transmission_tint), 0.75);
 }
 
 TEST(GltfMaterial, MissingTextureLeavesTheFactor) {

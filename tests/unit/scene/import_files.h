@@ -29,7 +29,8 @@ class TempDir {
   }
   TempDir(const TempDir&) = delete;
   TempDir& operator=(const TempDir&) = delete;
-  [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+  [[nodiscard]] std::filesystem::path write(const std::string& name,
+                                            const std::string& bytes) const {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return path_ / name;
   }
@@ -40,7 +41,8 @@ class TempDir {
 };
 
 inline std::string base64(const std::string& bytes) {
-  static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static const char* const kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t word = 0;
@@ -71,7 +73,9 @@ class Bytes {
     return *this;
   }
   [[nodiscard]] const std::string& str() const { return data_; }
-  [[nodiscard]] std::string uri() const { return "data:application/octet-stream;base64," + base64(data_); }
+  [[nodiscard]] std::string uri() const {
+    return "data:application/octet-stream;base64," + base64(data_);
+  }
 
  private:
   std::string data_;
@@ -80,7 +84,9 @@ class Bytes {
 inline std::string glb(std::string json, std::string bin) {
   while (json.size() % 4 != 0) json += ' ';
   while (bin.size() % 4 != 0) bin += '\0';
-  const auto word = [](std::size_t v) { return Bytes().add<std::uint32_t>({static_cast<std::uint32_t>(v)}).str(); };
+  const auto word = [](std::size_t v) {
+    return Bytes().add<std::uint32_t>({static_cast<std::uint32_t>(v)}).str();
+  };
   std::string out = "glTF" + word(2) + word(28 + json.size() + bin.size());
   out += word(json.size()) + "JSON" + json;
   out += word(bin.size()) + std::string("BIN\0", 4) + bin;
@@ -89,17 +95,20 @@ inline std::string glb(std::string json, std::string bin) {
 
 /// JSON of a file with one buffer, one mesh with one primitive, one node; `views`, `accessors` and
 /// `primitive` are the inside of their brackets, `more` further members with a comma in front.
-inline std::string gltf_json(const Bytes& buffer, const std::string& views, const std::string& accessors,
-                             const std::string& primitive, const std::string& more = "",
+inline std::string gltf_json(const Bytes& buffer, const std::string& views,
+                             const std::string& accessors, const std::string& primitive,
+                             const std::string& more = "",
                              const std::string& node = R"("mesh":0)") {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{)" + node +
-         R"(}],"meshes":[{"name":"m","primitives":[{)" + primitive + R"(}]}],"buffers":[{"byteLength":)" +
-         std::to_string(buffer.str().size()) + R"(,"uri":")" + buffer.uri() + R"("}],"bufferViews":[)" + views +
-         R"(],"accessors":[)" + accessors + "]" + more + "}";
+         R"(}],"meshes":[{"name":"m","primitives":[{)" + primitive +
+         R"(}]}],"buffers":[{"byteLength":)" + std::to_string(buffer.str().size()) + R"(,"uri":")" +
+         buffer.uri() + R"("}],"bufferViews":[)" + views + R"(],"accessors":[)" + accessors + "]" +
+         more + "}";
 }
 
 /// A right triangle with legs 1 in the xy plane and the given further members and material.
-inline std::string triangle_gltf(const std::string& more = "", const std::string& primitive_more = "",
+inline std::string triangle_gltf(const std::string& more = "",
+                                 const std::string& primitive_more = "",
                                  const std::string& node = R"("mesh":0)") {
   const Bytes buffer = Bytes().add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
   return gltf_json(buffer, R"({"buffer":0,"byteLength":36})",
