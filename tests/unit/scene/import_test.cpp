@@ -67,8 +67,8 @@ TEST(OriginalModels, AgreeWithAnIndependentReader) {
       uv = uv || !mesh.uvs.empty();
       normals = normals || !mesh.normals.empty();
     }
-    if (want.contains("uv")) EXPECT_EQ(uv, want["uv"].get<bool>());
-    if (want.contains("normals")) EXPECT_EQ(normals, want["normals"].get<bool>());
+    EXPECT_EQ(uv, want.value("uv", uv));
+    EXPECT_EQ(normals, want.value("normals", normals));
   }
 }
 
