@@ -40,12 +40,6 @@ Rgb rgb_of(const std::vector<double>& v, double otherwise) {
   });
 }
 
-/// One number where the three channels agree: grey scenes then need one lane only.
-SpectralValue spectral(const Rgb& c) {
-  if (c[0] == c[1] && c[1] == c[2]) return static_cast<double>(c[0]);
-  return c;
-}
-
 // ---- the parameters of a glTF material, in range ----
 
 struct Parameters {
@@ -81,6 +75,7 @@ class Mapper {
   void read_metallic_texture();
   void map_surface(Material& m);
   void map_transmission(Material& m);
+  void map_thin_transmission(Material& m);
   void map_dielectric(Material& m);
   void map_mixed_metal(Material& m);
   void map_unlit(Material& m);
@@ -267,28 +262,29 @@ void Mapper::set_mix(Material& m, double t) {
 }
 
 void Mapper::map_transmission(Material& m) {
+  if (p_.metallic > 0.0) warn("metallic is ignored beside transmission");
+  if (!(p_.thickness > 0.0)) return map_thin_transmission(m);
+  m.medium = Material::Medium::Solid;
   m.n = p_.ior;
   set_mix(m, p_.transmission);
-  if (p_.metallic > 0.0) warn("metallic is ignored beside transmission");
-  if (p_.thickness > 0.0) {
-    m.medium = Material::Medium::Solid;
-    // glTF tints with the base colour once for the visible surface; light passes two of a body's.
-    m.transmission_tint =
-        spectral(Rgb::generate([&](int i) { return std::sqrt(static_cast<double>(p_.base[i])); }));
-    if (std::isfinite(p_.attenuation_distance) && p_.attenuation_distance > 0.0) {
-      m.extinction = spectral(Rgb::generate([&](int i) {
-        const double share = std::max(static_cast<double>(p_.attenuation_color[i]), 1e-6);
-        return -std::log(share) / p_.attenuation_distance;
-      }));
-    }
-    return;
-  }
-  m.medium = Material::Medium::Pane;
-  m.transmission_tint = spectral(p_.base);
-  m.pane_thickness = 0.004;
-  if (!m.smooth()) {
-    warn("a rough thin sheet is passed straight, its roughness is left out");
-    m.c = std::numeric_limits<double>::infinity();
+  // glTF tints with the base colour once for the visible surface; light passes two of a body's.
+  m.transmission_tint =
+      spectral(Rgb::generate([&](int i) { return std::sqrt(static_cast<double>(p_.base[i])); }));
+  if (!std::isfinite(p_.attenuation_distance) || !(p_.attenuation_distance > 0.0)) return;
+  m.extinction = spectral(Rgb::generate([&](int i) {
+    const double share = std::max(static_cast<double>(p_.attenuation_color[i]), 1e-6);
+    return -std::log(share) / p_.attenuation_distance;
+  }));
+}
+
+void Mapper::map_thin_transmission(Material& m) {
+  if (!m.smooth()) warn("a rough thin sheet is passed straight, its roughness is left out");
+  if (p_.transmission < 1.0) warn("a thin sheet that transmits in part is simplified");
+  m.body_texture = slot(source_.pbrMetallicRoughness.baseColorTexture, true);
+  set_thin_sheet(m, p_.transmission, p_.base, p_.base, p_.ior);
+  if (source_.pbrMetallicRoughness.baseColorTexture.index >= 0 &&
+      m.medium == Material::Medium::Pane) {
+    warn("the texture of a pane is left out, the factor holds everywhere");
   }
 }
 
@@ -325,7 +321,7 @@ void Mapper::map_alpha(Material& m) {
 }
 
 /// BLEND with an alpha texture is cut at one half; with a constant alpha it is a clear sheet that
-/// passes 1 - alpha, and a Lambertian body for the rest.
+/// passes 1 - alpha.
 void Mapper::map_blend(Material& m) {
   if (base_texture_has_alpha()) {
     warn("alphaMode BLEND with a texture is treated as MASK at 0.5");
@@ -335,14 +331,8 @@ void Mapper::map_blend(Material& m) {
     return;
   }
   if (p_.alpha >= 1.0 || p_.transmission > 0.0 || p_.unlit) return;
-  warn("alphaMode BLEND with alpha " + std::to_string(p_.alpha) + " is treated as a thin pane");
-  m.medium = Material::Medium::Pane;
-  m.n = p_.ior;
-  m.kappa = 0.0;
-  m.c = std::numeric_limits<double>::infinity();
-  m.reflectance_texture = {};
-  m.roughness_texture = {};
-  set_mix(m, 1.0 - p_.alpha);
+  warn("alphaMode BLEND with alpha " + std::to_string(p_.alpha) + " is treated as a thin sheet");
+  set_thin_sheet(m, 1.0 - p_.alpha, Rgb(1.0f), p_.base, p_.ior);
 }
 
 void Mapper::map_emission(Material& m) {

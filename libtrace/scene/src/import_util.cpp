@@ -94,6 +94,35 @@ void set_metal(material::Material& material, const Rgb& f0) {
   material.k_df = 0.0;
 }
 
+void set_thin_sheet(material::Material& m, double t, const Rgb& tint, const Rgb& base, double n) {
+  const auto share = static_cast<float>(t);
+  m.combination = material::Material::Combination::Convex;
+  m.c = std::numeric_limits<double>::infinity();
+  m.n = n;
+  m.kappa = 0.0;
+  m.roughness_texture = {};
+  m.reflectance_texture = {};
+  if (t >= 0.5) {
+    m.medium = material::Material::Medium::Pane;
+    m.k_rg = m.k_tp_rg = 1.0;
+    m.k_df = m.k_tp_df = 0.0;
+    m.transmission_tint = spectral(tint * share);
+    m.body_reflectance.reset();
+    m.body_texture = {};
+  } else {
+    m.medium = material::Material::Medium::Opaque;
+    m.k_rg = m.k_tp_rg = 0.0;
+    m.k_df = m.k_tp_df = 1.0;
+    m.body_reflectance = spectral(base * (1.0f - share));
+    m.body_transmittance = spectral(tint * share);
+  }
+}
+
+material::SpectralValue spectral(const Rgb& c) {
+  if (c[0] == c[1] && c[1] == c[2]) return static_cast<double>(c[0]);
+  return c;
+}
+
 double roughness_to_c(double roughness) {
   const double m = unit_range(roughness) * unit_range(roughness);
   return m < 1e-3 ? std::numeric_limits<double>::infinity() : 1.0 / m;

@@ -29,6 +29,17 @@ namespace atrium::scene {
 /// kappa = k/n = 2 sqrt(r)/(1 - r). r is limited to 0.999. (MATERIAL_MODEL 7)
 void set_metal(material::Material& material, const Rgb& f0);
 
+/// A thin sheet that passes the share t, coloured by `tint`, and has a body of colour `base`
+/// beside.
+///
+/// t >= 1/2: a smooth pane of index n, its tint times t (a pane has no body: that share is lost).
+/// t < 1/2: a translucent Lambertian sheet, reflectance (1 - t) base, transmittance t tint.
+void set_thin_sheet(material::Material& material, double t, const Rgb& tint, const Rgb& base,
+                    double n);
+
+/// One number where the three channels agree, so that grey scenes need one lane only.
+[[nodiscard]] material::SpectralValue spectral(const Rgb& color);
+
 /// Roughness of glTF (0 to 1) to c [1/rad]: m = roughness^2, c = 1/m; m below 1e-3 is smooth.
 [[nodiscard]] double roughness_to_c(double roughness);
 

@@ -10,12 +10,6 @@ namespace atrium::scene {
 namespace {
 
 using material::Material;
-using material::SpectralValue;
-
-SpectralValue spectral(const Rgb& c) {
-  if (c[0] == c[1] && c[1] == c[2]) return static_cast<double>(c[0]);
-  return c;
-}
 
 material::TextureSlot slot(const MtlMaterial::Map& map, const std::filesystem::path& folder,
                            bool srgb, Model& model) {
@@ -59,15 +53,9 @@ Rgb transmittance(const MtlMaterial& s) {
   return Rgb(1.0f);
 }
 
-/// A thin pane: the linear mix of a clear sheet (1 - d) and a Lambertian body (d).
-void map_pane(const MtlMaterial& s, Material& m) {
+void map_thin(const MtlMaterial& s, Material& m) {
   const double share = s.d < 1.0 ? 1.0 - unit_range(s.d) : 1.0;
-  m.medium = Material::Medium::Pane;
-  m.n = s.ni > 1.0 ? s.ni : 1.5;
-  m.k_rg = m.k_tp_rg = share;
-  m.k_df = m.k_tp_df = 1.0 - share;
-  m.body_transmittance = 0.0;
-  m.transmission_tint = spectral(transmittance(s));
+  set_thin_sheet(m, share, transmittance(s), unit_range(s.kd), s.ni > 1.0 ? s.ni : 1.5);
 }
 
 void map_opaque(const MtlMaterial& s, Material& m) {
@@ -106,7 +94,7 @@ material::Material obj_material(const MtlMaterial& s, const std::filesystem::pat
   // Kd 0 beside map_Kd is common; the texture alone is meant then.
   if (m.body_texture.texture.valid() && s.kd.is_zero()) m.body_reflectance = 1.0;
   if (transmits(s)) {
-    map_pane(s, m);
+    map_thin(s, m);
   } else {
     map_opaque(s, m);
   }
