@@ -69,7 +69,7 @@ class Prober {
   /// How good a heading is: far and deep, with little of it empty, and many things to see.
   double heading_score(const Vec3d& eye, double yaw, double diagonal) {
     double sum = 0.0;
-    std::set<std::uint32_t> seen;
+    std::set<std::uint32_t> seen;  // materials: the slats of a blind are many objects
     constexpr int columns = 15;
     constexpr int rows = 9;
     for (int j = 0; j < rows; ++j) {
@@ -82,7 +82,7 @@ class Prober {
         const auto hit =
             query_.closest({eye.cast<float>(), direction}, counters_, Counter::RaysProbe);
         if (!hit) continue;
-        seen.insert(hit->object.value);
+        seen.insert(scene_.objects[hit->object.value].material.value);
         sum += std::sqrt(std::min(static_cast<double>(hit->t), diagonal) / diagonal);
       }
     }
