@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "scene/ray_query.h"
 
 namespace atrium::scene {
 namespace {
 
-constexpr int kCandidates = 96;  // places for the eye
+constexpr int kCandidates = 160;  // places for the eye
 constexpr int kSphereRays = 160;
 constexpr int kHeadings = 48;
 
@@ -60,26 +61,32 @@ class Prober {
     const double mean =
         std::exp(log_distance / enclosed);  // geometric: one long corridor is not all
     const double clearance = std::min(1.0, nearest / (0.02 * diagonal));
-    // A room with windows has a share of 0.8 and more; the open air around a building below 0.6.
-    return std::pow(share, 6.0) * mean * (0.1 + 0.9 * clearance);
+    // A room with windows has a share of 0.8 and more; the open air over ground 0.5, but its
+    // distances are a hundred times larger.
+    return std::pow(share, 14.0) * mean * (0.1 + 0.9 * clearance);
   }
 
-  /// How good a heading is: far and deep, with little of it empty or close.
+  /// How good a heading is: far and deep, with little of it empty, and many things to see.
   double heading_score(const Vec3d& eye, double yaw, double diagonal) {
     double sum = 0.0;
-    constexpr int columns = 9;
-    constexpr int rows = 5;
+    std::set<std::uint32_t> seen;  // materials: the slats of a blind are many objects
+    constexpr int columns = 15;
+    constexpr int rows = 9;
     for (int j = 0; j < rows; ++j) {
       for (int i = 0; i < columns; ++i) {
         const double side = yaw + 0.6 * (2.0 * i / (columns - 1) - 1.0);
-        const double pitch = 0.4 * (2.0 * j / (rows - 1) - 1.0);
-        const Vec3d direction(std::cos(pitch) * std::cos(side), std::sin(pitch),
-                              std::cos(pitch) * std::sin(side));
-        const std::optional<float> d = distance(eye, direction.cast<float>());
-        if (d) sum += std::sqrt(std::min(static_cast<double>(*d), diagonal) / diagonal);
+        const double pitch = 0.45 * (2.0 * j / (rows - 1) - 1.0);
+        const Vec3f direction = Vec3d(std::cos(pitch) * std::cos(side), std::sin(pitch),
+                                      std::cos(pitch) * std::sin(side))
+                                    .cast<float>();
+        const auto hit =
+            query_.closest({eye.cast<float>(), direction}, counters_, Counter::RaysProbe);
+        if (!hit) continue;
+        seen.insert(scene_.objects[hit->object.value].material.value);
+        sum += std::sqrt(std::min(static_cast<double>(hit->t), diagonal) / diagonal);
       }
     }
-    return sum;
+    return sum * (1.0 + std::log2(1.0 + static_cast<double>(seen.size())));
   }
 
  private:
@@ -93,12 +100,30 @@ double eye_height(double scene_height) {
   return scene_height > 2.0 && scene_height < 500.0 ? 1.6 : 0.45 * scene_height;
 }
 
-// A place in the bounds, stood on the floor below it.
+// A place above some object: furniture and walls are where the rooms are, however large the ground
+// around the building is.
+Vec3d place_near_object(const Scene& scene, int i) {
+  const auto pick = [](double share, std::size_t count) {
+    return std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
+  };
+  const ObjectId object(pick(halton(i, 2), scene.objects.size()));
+  const std::size_t triangles = scene.mesh_of(object).triangles.size();
+  if (triangles == 0) return scene.bounds.center();
+  const auto corners =
+      scene.corners(object, static_cast<std::uint32_t>(pick(halton(i, 3), triangles)));
+  const Vec3f middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
+  const double reach = eye_height(scene.bounds.sizes().y());
+  const Vec3d step(2.0 * halton(i, 5) - 1.0, 0.3, 2.0 * halton(i, 7) - 1.0);
+  return middle.cast<double>() + reach * step;
+}
+
+// A place in the bounds, or near an object, stood on the floor below it.
 Vec3d candidate(const Scene& scene, Prober& prober, int i) {
   const Vec3d size = scene.bounds.sizes();
   const Vec3d low = scene.bounds.min();
   Vec3d eye = low + size.cwiseProduct(Vec3d(0.05 + 0.9 * halton(i, 2), 0.05 + 0.9 * halton(i, 3),
                                             0.05 + 0.9 * halton(i, 5)));
+  if (i % 2 == 1 && !scene.objects.empty()) eye = place_near_object(scene, i / 2);
   const std::optional<float> floor = prober.distance(eye, Vec3f(0.0f, -1.0f, 0.0f));
   const std::optional<float> ceiling = prober.distance(eye, Vec3f(0.0f, 1.0f, 0.0f));
   if (!floor) return eye;

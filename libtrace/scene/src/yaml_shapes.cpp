@@ -62,15 +62,16 @@ void check_polygon(const std::vector<Vec3d>& points, const YamlView& view) {
   const double area = normal.norm();
   if (!(area > 0.0)) view.fail("a polygon without area");
   normal /= area;
-  constexpr double share = 1e-4;  // of the polygon's size: measured data are not exactly flat
+  constexpr double flatness = 0.01;  // of the polygon's size: measured walls are slightly twisted
+  constexpr double rounding = 1e-6;
   const std::size_t n = points.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (std::abs((points[i] - points[0]).dot(normal)) > share * std::sqrt(area)) {
+    if (std::abs((points[i] - points[0]).dot(normal)) > flatness * std::sqrt(area)) {
       view.fail("a polygon must be flat: split it into triangles");
     }
     const Vec3d& next = points[(i + 1) % n];
     const double turn = (next - points[i]).cross(points[(i + 2) % n] - next).dot(normal);
-    if (turn < -share * area) view.fail("a polygon must be convex: split it");
+    if (turn < -rounding * area) view.fail("a polygon must be convex: split it");
   }
 }
 

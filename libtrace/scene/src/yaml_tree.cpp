@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 16u << 20;
 constexpr std::size_t kMaxDepth = 64;
-constexpr std::size_t kMaxValues = 4'000'000;
+constexpr std::size_t kMaxValues = 2'000'000;
 
 std::size_t count_values(const YamlNode& node) {
   std::size_t count = 1;
@@ -76,7 +76,7 @@ class Builder : public YAML::EventHandler {
   }
   void count(const YAML::Mark& mark, std::size_t values) {
     values_ += values;
-    if (values_ > kMaxValues) fail(mark, "more than 4 million values (aliases included)");
+    if (values_ > kMaxValues) fail(mark, "more than 2 million values (aliases included)");
   }
   YamlNode make(YamlNode::Kind kind, const YAML::Mark& mark) {
     mark_ = mark;

@@ -27,7 +27,7 @@ struct YamlNode::Entry {
 };
 
 /// Parses one document. Refused: more than 16 MiB, nesting deeper than 64, aliases that expand to
-/// more than 4 million values, keys that are no plain text or appear twice.
+/// more than 2 million values, keys that are no plain text or appear twice.
 /// \throws Error "FILE:LINE:COLUMN: ...".
 [[nodiscard]] YamlNode load_yaml(const std::filesystem::path& file);
 
