@@ -107,8 +107,8 @@ TEST(Rows, ReciprocityOfDirectAndGatheredLight) {
     const auto lamp = maker.material(test::emitter(1.0 / kPi, 0.5));
     const auto plate = maker.material(test::diffuse(0.5));
     maker.quad(first ? lamp : plate, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
-    maker.quad(first ? plate : lamp, {0, 0, 0}, {0, 1, 0}, {0, 1, 3}, {0, 0, 3});
-    return Solved(maker.take(), {.element_size = 0.25, .gather_rays = 512, .direct_samples = 128});
+    maker.quad(first ? plate : lamp, {0, 0, 0.5f}, {0, 1, 0.5f}, {0, 1, 3.5f}, {0, 0, 3.5f});
+    return Solved(maker.take(), {.element_size = 0.25, .gather_rays = 16, .direct_samples = 1024});
   };
   const Solved a = solved(true), b = solved(false);
   const auto received = [](const Solved& s, std::uint32_t object) {
@@ -117,38 +117,45 @@ TEST(Rows, ReciprocityOfDirectAndGatheredLight) {
   };
   const auto to_wall = received(a, 1), to_floor = received(b, 0);
   EXPECT_NEAR(3.0 * to_wall.value, to_floor.value, 4 * std::hypot(3.0 * to_wall.error, to_floor.error));
-  EXPECT_LT(to_floor.error, 0.005 * to_floor.value);
+  EXPECT_LT(to_floor.error, 0.01 * to_floor.value);
 }
 
-// A cube that stands 5 cm deep in the floor: points of the floor inside it are dropped, so the
-// floor beside it is as bright as without the buried part.
+// A slab that stands in the floor: points of the floor inside it are dropped, so an element that
+// it half covers has the mean of its free part.
 TEST(Rows, BuriedPointsDoNotDarkenTheirElement) {
-  const auto solved = [](bool cube) {
-    SceneMaker maker;
-    const auto m = maker.material(test::diffuse(1e-6));  // 0 has no elements
-    maker.quad(m, {-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0});
-    if (cube) {
-      // Closed, opaque, 1 m wide and only 5 cm high above the floor: hardly a shadow.
-      const float h = 0.05f;
-      std::vector<Vec3f> p;
-      for (const float z : {-h, h})
-        for (const float y : {-0.5f, 0.5f})
-          for (const float x : {-0.5f, 0.5f}) p.emplace_back(x + 0.5f, y + 0.5f, z);
-      maker.object(m, p,
-                   {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}},
-                   true);
+  SceneMaker maker;
+  const auto m = maker.material(test::diffuse(1e-6));  // 0 has no elements
+  maker.quad(m, {-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0});
+  // Closed, opaque, over [0, 1]^2 and only 1 cm high above the floor: hardly a shadow.
+  const float h = 0.01f;
+  std::vector<Vec3f> p;
+  for (const float z : {-h, h})
+    for (const float y : {0.0f, 1.0f})
+      for (const float x : {0.0f, 1.0f}) p.emplace_back(x, y, z);
+  maker.object(m, p,
+               {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}},
+               true);
+  maker.point_light({0, 0, 3}, 10.0);
+  const Solved s(maker.take(), {.element_size = 2.0, .direct_samples = 1024});
+  // E = I h / d^3 over [0, 2]^2 without [0, 1]^2, midpoint rule.
+  double sum = 0.0;
+  int points = 0;
+  for (int i = 0; i < 200; ++i)
+    for (int j = 0; j < 200; ++j) {
+      const double x = (i + 0.5) / 100, y = (j + 0.5) / 100;
+      if (x < 1 && y < 1) continue;
+      sum += 10.0 * 3 / std::pow(x * x + y * y + 9, 1.5);
+      ++points;
     }
-    maker.point_light({0, 0, 3}, 10.0);
-    return Solved(maker.take(), {.element_size = 2.0, .direct_samples = 256});
-  };
-  const Solved with = solved(true), without = solved(false);
-  for (std::size_t e = 0; e < without.count(); ++e) {
-    if (with.object(e) != 0) continue;
-    // The element at (1, 1) is covered to a quarter; its other points are a little darker than the
-    // mean by geometry (4 % at most, as those near the light are covered) and by the low edge.
-    EXPECT_NEAR(with.direct(e), without.direct(e), 0.06 * without.direct(e));
+  int found = 0;
+  for (std::size_t e = 0; e < s.count(); ++e) {
+    if (s.object(e) != 0 || (s.centre(e) - Vec3f(1, 1, 0)).norm() > 0.01f) continue;
+    // 16 to 64 rays tell the buried share, a quarter, to about 2 %; the shadow takes 0.1 %.
+    EXPECT_NEAR(s.direct(e), sum / points, 0.03 * sum / points);
+    ++found;
   }
+  EXPECT_EQ(found, 1);
 }
 
 }  // namespace

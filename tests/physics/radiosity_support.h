@@ -29,11 +29,12 @@ struct Solved {
     Vec3f sum = Vec3f::Zero();
     float weight = 0.0f;
     for (std::size_t p = result.elements.first_piece[e]; p < result.elements.first_piece[e + 1]; ++p) {
-      const auto& piece = result.elements.pieces[p];
-      Vec3f c = Vec3f::Zero();
-      for (const Vec3f& v : piece.corners) c += v;
-      sum += piece.area * c / static_cast<float>(piece.corners.size());
-      weight += piece.area;
+      const auto& c = result.elements.pieces[p].corners;
+      for (std::size_t k = 1; k + 1 < c.size(); ++k) {
+        const float area = (c[k] - c[0]).cross(c[k + 1] - c[0]).norm();
+        sum += area / 3.0f * (c[0] + c[k] + c[k + 1]);
+        weight += area;
+      }
     }
     return sum / weight;
   }
