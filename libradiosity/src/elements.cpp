@@ -38,20 +38,33 @@ double cell_count(double area, double h, double cap) {
   return std::max(1.0, std::min(area / (h * h), cap));
 }
 
-/// The cell size at which the surfaces need about `budget` elements.
-double solve_cell_size(const std::vector<double>& areas, double budget, double cap) {
+double cell_count(const std::vector<double>& areas, double h, double cap) {
+  double count = 0.0;
+  for (const double a : areas) count += cell_count(a, h, cap);
+  return count;
+}
+
+struct CellSize {
+  double cell, cap;  // edge [m]; most cells that one surface gets
+};
+
+/// The cell size at which the surfaces need about `budget` elements. No surface gets more than a
+/// quarter of them unless there is not enough else to spend them on.
+CellSize solve_cell_size(const std::vector<double>& areas, double budget) {
   double total = 0.0;
   for (const double a : areas) total += a;
-  if (!(total > 0.0)) return 1.0;
-  double log_low = std::log(total) * 0.5 - 16.0;
-  double log_high = std::log(total) * 0.5 + 1.0;
-  for (int i = 0; i < 40; ++i) {
-    const double h = std::exp(0.5 * (log_low + log_high));
-    double count = 0.0;
-    for (const double a : areas) count += cell_count(a, h, cap);
-    (count > budget ? log_low : log_high) = std::log(h);
+  if (!(total > 0.0)) return {1.0, budget};
+  for (double cap = budget / 4.0;; cap *= 2.0) {
+    if (cap >= budget) cap = 1e12;  // one surface is nearly everything
+    double log_low = 0.5 * std::log(total / budget) - 8.0;
+    double log_high = 0.5 * std::log(total) + 1.0;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (log_low + log_high);
+      (cell_count(areas, std::exp(middle), cap) > budget ? log_low : log_high) = middle;
+    }
+    const double h = std::exp(log_high);
+    if (cap >= budget || cell_count(areas, h, cap) > 0.9 * budget) return {h, std::min(cap, 2.0 * budget)};
   }
-  return std::exp(log_high);
 }
 
 struct ObjectPart {
@@ -93,9 +106,7 @@ class Builder {
         parts_[object].area += triangle_area(scene_.corners(id, t));
       areas.push_back(parts_[object].area);
     }
-    cap_ = budget_ / 4.0;
-    cell_ = options_.element_size > 0.0 ? options_.element_size
-                                        : solve_cell_size(areas, budget_, cap_);
+    set_cell_size(areas);
   }
 
   void grow(std::size_t object) {
@@ -120,18 +131,26 @@ class Builder {
   }
 
   void choose_final_size() {
-    if (options_.element_size > 0.0) return;
     std::vector<double> areas;
     for (const ObjectPart& p : parts_)
       for (const Facet& f : p.facets) areas.push_back(f.clump ? 0.0 : f.area);
-    cell_ = solve_cell_size(areas, budget_, cap_);
+    set_cell_size(areas);
+  }
+
+  /// A size that was asked for is kept, but for facets of very many cells.
+  void set_cell_size(const std::vector<double>& areas) {
+    const CellSize size = options_.element_size > 0.0
+                              ? CellSize{options_.element_size, budget_ * 4.0}
+                              : solve_cell_size(areas, budget_);
+    cell_ = size.cell;
+    cap_ = size.cap;
   }
 
   void cut(std::size_t object) {
     const Corners corners = object_corners(scene_, ObjectId(object));
     for (const Facet& f : parts_[object].facets)
       parts_[object].cuts.push_back(
-          cut_facet(corners, f, cell_, options_.element_size > 0.0 ? budget_ * 4.0 : cap_));
+          cut_facet(corners, f, cell_, cap_));
   }
 
   Elements assemble() {

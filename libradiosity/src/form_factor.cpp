@@ -1,5 +1,7 @@
 #include "radiosity/form_factor.h"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <vector>
 
@@ -38,24 +40,33 @@ struct Node {
   double x, weight;
 };
 
-/// Gauss-Legendre with 12 nodes on [0, 1] after x = s^3 (10 - 15 s + 6 s^2), which flattens the
+/// Gauss-Legendre with 16 nodes on [0, 1] after x = s^3 (10 - 15 s + 6 s^2), which flattens the
 /// x ln x behaviour of the integrand where edges of two polygons meet.
-const std::array<Node, 12>& nodes() {
-  static const std::array<Node, 12> table = [] {
-    constexpr std::array<double, 6> x{0.1252334085114689, 0.3678314989981802, 0.5873179542866175,
-                                      0.7699026741943047, 0.9041172563704749, 0.9815606342467193};
-    constexpr std::array<double, 6> w{0.2491470458134028, 0.2334925365383548, 0.2031674267230659,
-                                      0.1600783285433462, 0.1069393259953184, 0.0471753363865118};
-    std::array<Node, 12> result{};
-    for (std::size_t i = 0; i < 12; ++i) {
-      const double s = 0.5 + 0.5 * (i < 6 ? -x[5 - i] : x[i - 6]);
+const std::array<Node, 16>& nodes() {
+  static const std::array<Node, 16> table = [] {
+    constexpr std::array<double, 8> x{0.0950125098376374, 0.2816035507792589, 0.4580167776572274,
+                                      0.6178762444026438, 0.7554044083550030, 0.8656312023878318,
+                                      0.9445750230732326, 0.9894009349916499};
+    constexpr std::array<double, 8> w{0.1894506104550685, 0.1826034150449236, 0.1691565193950025,
+                                      0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
+                                      0.0622535239386479, 0.0271524594117541};
+    std::array<Node, 16> result{};
+    for (std::size_t i = 0; i < 16; ++i) {
+      const double s = 0.5 + 0.5 * (i < 8 ? -x[7 - i] : x[i - 8]);
       const double derivative = 30.0 * s * s * (1.0 - s) * (1.0 - s);
       result[i] = {s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
-                   0.5 * w[i < 6 ? 5 - i : i - 6] * derivative};
+                   0.5 * w[i < 8 ? 7 - i : i - 8] * derivative};
     }
     return result;
   }();
   return table;
+}
+
+/// Is nothing of the polygon farther above the plane than the rounding of its corners?
+bool lies_in(const Polygon& polygon, const Vec3d& origin, const Vec3d& normal) {
+  return std::all_of(polygon.begin(), polygon.end(), [&](const Vec3d& v) {
+    return normal.dot(v - origin) <= 1e-7 * (v - origin).norm();
+  });
 }
 
 /// Double contour integral of ln r dx . dy over all pairs of edges.
@@ -100,7 +111,7 @@ double polygon_exchange_area(std::span<const Vec3d> a, std::span<const Vec3d> b)
   const Vec3d normal_b = polygon_area_vector(b).normalized();
   const Polygon part_a = in_front(a, b[0], normal_b);
   const Polygon part_b = in_front(b, a[0], normal_a);
-  if (part_a.empty() || part_b.empty()) return 0.0;
+  if (lies_in(part_a, b[0], normal_b) || lies_in(part_b, a[0], normal_a)) return 0.0;
   // The kernel's sign: polygons that face each other wind in opposite senses.
   return std::max(0.0, contour_integral(part_a, part_b) / (2.0 * std::numbers::pi));
 }

@@ -80,8 +80,8 @@ class ShootingSolver {
     scene::parallel_for(active.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         received_[active[k]] =
-            active[k] == i ? 0.0f
-                           : static_cast<float>(factor(active[k], shooter, counts[begin / kGrain]));
+            active[k] / 2 == i / 2 ? 0.0f
+                                   : static_cast<float>(factor(active[k], shooter, counts[begin / kGrain]));
     });
     for (const Counters& c : counts) counters_ += c;
     for (const SideIndex j : active) {
@@ -104,9 +104,13 @@ class ShootingSolver {
       const scene::SurfacePoint p = problem_.points.sample(j / 2, sampler.next_2d());
       const Vec3d normal = (sign * p.ng).template cast<double>();
       double f = 0.0;
-      for (const auto& polygon : shooter.polygons)
-        if (polygon_area_vector(polygon).dot(p.position.cast<double>() - polygon[0]) > 0.0)
+      // Points of the shooter's own plane may lie before it by rounding.
+      const double least = 4.0 * static_cast<double>(p.error) + 1e-6 * shooter.radius;
+      for (const auto& polygon : shooter.polygons) {
+        const Vec3d facing = polygon_area_vector(polygon).normalized();
+        if (facing.dot(p.position.cast<double>() - polygon[0]) > least)
           f += point_to_polygon(p.position.cast<double>(), normal, polygon);
+      }
       if (!(f > 1e-12)) continue;
       sum += f * visibility(p, sign, shooter, sampler.next_2d(), counters);
     }

@@ -1,0 +1,184 @@
+// Closed rooms whose answer is exact (VERIFICATION 3.2).
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "material/error.h"
+#include "physics/radiosity_support.h"
+#include "scene/parallel.h"
+
+namespace atrium::radiosity {
+namespace {
+
+using test::SceneMaker;
+using test::Solved;
+
+constexpr double kPi = std::numbers::pi;
+const auto everywhere = [](std::size_t) { return true; };
+
+// Cube, one constant element per face, face 0 emits exitance 1: B from the 6 x 6 system with the
+// closed-form factors.
+TEST(Matrix, CubeOfConstantElements) {
+  struct Case {
+    double rho, emitter, opposite, side;
+  };
+  for (const auto& c : {Case{0.5, 1.090909, 0.181746, 0.181836}, Case{0.8, 1.551724, 0.689551, 0.689681},
+                        Case{0.95, 4.033613, 3.193160, 3.193307}}) {
+    SCOPED_TRACE(c.rho);
+    SceneMaker maker;
+    const auto white = maker.material(test::diffuse(c.rho));
+    const auto lamp = maker.material(test::emitter(1.0 / kPi, c.rho));
+    maker.room({0, 0, 0}, {1, 1, 1}, {lamp, white, white, white, white, white});
+    const Solved s(maker.take(), {.solver = Solver::Matrix, .element_size = 10.0});
+    ASSERT_EQ(s.count(), 6U);
+    // Table values have 6 digits after the point.
+    EXPECT_NEAR(1.0 + c.rho * s.total(0), c.emitter, 3e-6);
+    EXPECT_NEAR(c.rho * s.total(1), c.opposite, 3e-6);
+    for (const std::size_t e : {2U, 3U, 4U, 5U}) EXPECT_NEAR(c.rho * s.total(e), c.side, 3e-6);
+    const FluxBalance& f = s.result.flux;
+    EXPECT_NEAR(f.emitted, 1.0, 1e-6);
+    EXPECT_NEAR(f.absorbed, 1.0, 2e-6);  // floats of the stored irradiance
+    EXPECT_NEAR(f.escaped, 0.0, 2e-6 / (1.0 - c.rho));
+  }
+}
+
+// Any closed room of uniform reflectance: the area mean of total irradiance is Phi / (A (1 - rho))
+// and that of the indirect part rho times it, whatever the light.
+TEST(Rows, MeanIrradianceOfAClosedRoom) {
+  for (const double rho : {0.3, 0.7, 0.9}) {
+    SCOPED_TRACE(rho);
+    SceneMaker maker;
+    maker.room({0, 0, 0}, {4, 3, 2.5f}, maker.material(test::diffuse(rho)));
+    const auto lamp = maker.material(test::emitter(5.0, rho));
+    maker.quad(lamp, {1, 1, 2.49f}, {1, 2, 2.49f}, {2, 2, 2.49f}, {2, 1, 2.49f});
+    const Solved s(maker.take(), {.element_size = 0.25, .direct_samples = 32});
+    EXPECT_TRUE(s.result.complete);
+    EXPECT_EQ(s.result.stopped_by, "tolerance");
+    // The lamp hangs 1 cm below the ceiling: its back and the ceiling above it belong to the room.
+    const double area = 2 * (12 + 10 + 7.5) + 2.0;
+    double flux = 0.0, variance = 0.0;
+    for (std::size_t e = 0; e < s.count(); ++e)
+      for (const int side : {0, 1}) {
+        flux += s.area(e) * s.total(e, side);
+        variance += std::pow(s.area(e) * s.error(e, side), 2);
+      }
+    const double exact = 5.0 * kPi / (1.0 - rho);
+    // Fluctuations of one bounce return with rho / (1 - rho); 4 standard errors, one in 16000.
+    const double error = 4 * std::sqrt(variance) / (1.0 - rho);
+    EXPECT_LT(error, 0.02 * exact);
+    EXPECT_NEAR(flux, exact, error) << "area " << area;
+    const FluxBalance& f = s.result.flux;
+    EXPECT_NEAR(f.emitted, 5.0 * kPi, 1e-4);
+    EXPECT_NEAR(f.absorbed + f.escaped, f.emitted, 4 * f.standard_error);
+    EXPECT_LT(f.standard_error, 0.01 * f.emitted);
+    EXPECT_EQ(f.escaped, 0.0);
+  }
+}
+
+// Sphere, lamp off centre: direct light varies, indirect is rho Phi / (4 pi R^2 (1 - rho))
+// everywhere. The facets of the tessellation change its area by 1.2 %, which the exact mean has.
+TEST(Rows, IndirectInASphereIsUniform) {
+  const double rho = 0.6;
+  SceneMaker maker;
+  maker.sphere(maker.material(test::diffuse(rho)), 2.0f, 4, true);
+  maker.point_light({0.9, 0.3, -0.5}, 10.0);
+  const Solved s(maker.take(), {.element_size = 0.4, .gather_rays = 256, .direct_samples = 64});
+  double area = 0.0;
+  for (std::size_t e = 0; e < s.count(); ++e) area += s.area(e);
+  const double exact = rho * 4 * kPi * 10.0 / (area * (1.0 - rho));
+  double squares = 0.0;
+  double most = 0.0, least = 1e9;
+  for (std::size_t e = 0; e < s.count(); ++e) {
+    squares += s.area(e) * std::pow(s.indirect(e) / exact - 1.0, 2);
+    most = std::max(most, s.direct(e));
+    least = std::min(least, s.direct(e));
+  }
+  EXPECT_GT(most, 4 * least);
+  const auto mean = s.mean([&](std::size_t e) { return s.indirect(e); }, everywhere);
+  EXPECT_NEAR(mean.value, exact, 4 * mean.error / (1.0 - rho));
+  // 320 rays of an integrand that varies fivefold: about 1 %; elements are 0.4 m wide.
+  EXPECT_LT(std::sqrt(squares / area), 0.02);
+}
+
+// Only what the room holds counts: moved, turned, scaled (irradiance as 1 / scale^2).
+TEST(Rows, MotionAndScaleDoNotMatter) {
+  const auto solved = [](double scale, const Vec3f& shift) {
+    SceneMaker maker;
+    const auto m = maker.material(test::diffuse(0.5));
+    const auto f = static_cast<float>(scale);
+    maker.room(shift, shift + f * Vec3f(3, 2, 2), m);
+    maker.point_light(shift.cast<double>() + scale * Vec3d(1, 1, 1.2), 5.0);
+    const Solved s(maker.take(), {.element_size = 0.25 * scale});
+    return s.mean([&](std::size_t e) { return s.indirect(e); },
+                  [&](std::size_t e) { return s.object(e) == 4; });
+  };
+  const auto base = solved(1.0, Vec3f::Zero());
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    SCOPED_TRACE(scale);
+    const auto other = solved(scale, Vec3f(10, -20, 5) * static_cast<float>(scale));
+    EXPECT_NEAR(other.value * scale * scale, base.value, 6 * base.error);
+  }
+}
+
+// One thread or two: the same bits.
+TEST(Rows, ThreadsDoNotMatter) {
+  const auto solved = [](int threads) {
+    const scene::ThreadLimit limit(threads);
+    SceneMaker maker;
+    maker.room({0, 0, 0}, {3, 2, 2}, maker.material(test::diffuse(0.7)));
+    material::Material mirror;
+    mirror.k_df = 0.0;
+    mirror.k_rg = 1.0;
+    mirror.n = 0.2;
+    mirror.kappa = 20.0;
+    maker.quad(maker.material(mirror), {1, 0.5f, 1}, {2, 0.5f, 1}, {2, 1.5f, 1.5f}, {1, 1.5f, 1.5f});
+    maker.point_light({1.4, 1, 1.8}, 5.0);
+    return Solved(maker.take(), {.element_size = 0.25, .caustic_photons = 20000}).result.field;
+  };
+  const scene::SurfaceField one = solved(1), two = solved(2);
+  EXPECT_EQ(one.irradiance.direct, two.irradiance.direct);
+  EXPECT_EQ(one.irradiance.caustic, two.irradiance.caustic);
+  EXPECT_EQ(one.irradiance.indirect, two.irradiance.indirect);
+  EXPECT_EQ(one.standard_error, two.standard_error);
+  EXPECT_FALSE(one.irradiance.caustic.empty());
+}
+
+TEST(Rows, EverythingReflectedHasNoSolution) {
+  SceneMaker maker;
+  maker.room({0, 0, 0}, {1, 1, 1}, maker.material(test::diffuse(1.0)));
+  maker.point_light({0.4, 0.4, 0.4}, 1.0);
+  const scene::Scene scene = maker.take();
+  const scene::RayQuery query(scene);
+  for (const Solver solver : {Solver::Rows, Solver::Matrix})
+    EXPECT_THROW(static_cast<void>(solve(query, material::SpectralBasis::grey(),
+                                         {.solver = solver, .element_size = 0.25})),
+                 Error);
+}
+
+// A field is usable whenever the solve is stopped.
+TEST(Rows, StopsOnRequest) {
+  SceneMaker maker;
+  maker.room({0, 0, 0}, {3, 2, 2}, maker.material(test::diffuse(0.5)));
+  maker.point_light({1, 1, 1}, 5.0);
+  const scene::Scene scene = maker.take();
+  const scene::RayQuery query(scene);
+  std::stop_source source;
+  scene::Control control;
+  control.stop = source.get_token();
+  int reports = 0;
+  control.progress = [&](std::string_view, double fraction, std::string_view remark) {
+    EXPECT_TRUE(fraction >= 0.0 && fraction <= 1.0);
+    ++reports;
+    if (remark == "rows") source.request_stop();
+  };
+  const SolveResult r =
+      solve(query, material::SpectralBasis::grey(), {.element_size = 0.25}, control);
+  EXPECT_FALSE(r.complete);
+  EXPECT_EQ(r.stopped_by, "interrupt");
+  EXPECT_GT(reports, 3);
+  ASSERT_EQ(r.field.irradiance.direct.size(), r.field.element_count() * 2);
+  EXPECT_GT(r.field.irradiance.direct[0], 0.0f);
+}
+
+}  // namespace
+}  // namespace atrium::radiosity
