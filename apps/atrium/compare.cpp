@@ -20,8 +20,8 @@ void check_channels(const scene::Image& image, const std::string& file) {
 }
 
 void print_measure(const char* name, const trace::Measure& m, double noise, bool noise_known) {
-  std::printf("%-12s %8.3f %%   95 %% interval %.3f to %.3f %%", name, 100.0 * m.value, 100.0 * m.low,
-              100.0 * m.high);
+  std::printf("%-12s %8.3f %%   95 %% interval %.3f to %.3f %%", name, 100.0 * m.value,
+              100.0 * m.low, 100.0 * m.high);
   if (noise_known) std::printf("   noise of the reference %.3f %% subtracted", 100.0 * noise);
   std::printf("\n");
 }
@@ -33,7 +33,8 @@ void print_text(const trace::Comparison& r) {
   if (r.bias_error > 0.0) std::printf("   standard error %.3f %%", 100.0 * r.bias_error);
   std::printf("\n%-12s %8.3f %%\n", "maximum", 100.0 * r.max_abs);
   if (!r.noise_known) std::printf("the reference has no stderr.* layers: its noise is included\n");
-  if (r.pixels_skipped > 0) std::printf("%zu pixels are not finite and were skipped\n", r.pixels_skipped);
+  if (r.pixels_skipped > 0)
+    std::printf("%zu pixels are not finite and were skipped\n", r.pixels_skipped);
 }
 
 void add_measure(JsonWriter& json, const char* name, const trace::Measure& m, double noise) {
@@ -65,7 +66,11 @@ void print_json(const trace::Comparison& r) {
 int run_compare(const CompareCommand& c) {
   if (!c.difference.empty()) {
     if (!scene::is_image_ending(c.difference)) {
-      throw Error(c.difference + ": unknown image format (known: .exr .hdr .pfm .png .jpg)");
+      throw Error(c.difference + ": unknown image format (known: .exr .pfm .png .jpg)");
+    }
+    if (scene::file_ending(c.difference) == ".hdr") {
+      throw Error(c.difference +
+                  ": .hdr cannot hold a difference, which has a sign (.exr .pfm can)");
     }
     scene::check_output(c.difference);
   }

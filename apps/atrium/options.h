@@ -75,13 +75,11 @@ struct SolveCommand {
 };
 
 struct InfoCommand {
-  CommonOptions common;
   SceneOptions scene;
   bool json = false;
 };
 
 struct CompareCommand {
-  CommonOptions common;
   std::string image, reference;
   std::string difference;   ///< output, may be empty
   double full_scale = 0.2;  ///< of a difference shown in 8 bits

@@ -1,11 +1,15 @@
 // The only code that sees CLI11.
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "material/error.h"
 #include "options.h"
+#include "scene/image_io.h"
+#include "scene/output_file.h"
 
 namespace atrium::app {
 
@@ -90,13 +94,11 @@ T choose(const std::string& text, std::initializer_list<std::pair<const char*, T
   throw Error(text + ": unknown choice");  // IsMember has refused it before
 }
 
-void add_common(CLI::App& app, CommonOptions& o, bool computes) {
-  if (computes) {
-    app.add_option("--threads", o.threads, "threads; 0: one per core")
-        ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
-    app.add_option("--stats", o.stats, "write phases, counters, memory, errors to this JSON file");
-  }
+void add_common(CLI::App& app, CommonOptions& o) {
+  app.add_option("--threads", o.threads, "threads; 0: one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--stats", o.stats, "write phases, counters, memory, errors to this JSON file");
   CLI::Option* quiet = app.add_flag("--quiet,-q", o.quiet, "no progress; warnings stay");
   app.add_flag("--verbose,-v", o.verbose, "say what is decided and why")->excludes(quiet);
 }
@@ -168,7 +170,12 @@ void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
       ->type_name("FILE.atrium");
   app.add_option("--save-solution", o.save_solution, "keep the radiosity solution")
       ->type_name("FILE.atrium");
-  add_common(app, o.common, true);
+  add_common(app, o.common);
+}
+
+bool any_output(const RenderCommand& o, bool (*is)(const std::filesystem::path&)) {
+  return std::any_of(o.outputs.begin(), o.outputs.end(),
+                     [&](const std::string& f) { return is(f); });
 }
 
 /// Options that would be ignored, or that say two things, are mistakes worth a word.
@@ -187,6 +194,15 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   }
   if (o.method == trace::Method::Path && o.mode == trace::Mode::Paper) {
     throw Error("--mode paper: --method path needs energy-conserving materials (radiometric)");
+  }
+  if (!any_output(o, scene::is_display_ending)) {
+    for (const char* name : {"--exposure", "--tone"}) {
+      refuse(name, "only 8-bit images are tone mapped: there is no .png or .jpg output");
+    }
+  }
+  if (!any_output(o,
+                  [](const std::filesystem::path& f) { return scene::file_ending(f) == ".exr"; })) {
+    refuse("--components", "only .exr holds layers: there is no such output");
   }
   if (!o.solution.empty()) {
     refuse("--save-solution", "there is nothing new to save with --solution");
@@ -257,14 +273,13 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     add_solve(sub, solve.solve, solve_texts);
-    add_common(sub, solve.common, true);
+    add_common(sub, solve.common);
   }
   void add_info_command(CLI::App& sub) {
     add_scene(sub, info.scene, info_texts);
     sub.get_option("scene")->description(
         "scene files, put together; or one luminaire (.ies), image or solution (.atrium)");
     sub.add_flag("--json", info.json, "for programs");
-    add_common(sub, info.common, false);
   }
   void add_compare_command(CLI::App& sub) {
     sub.add_option("image", compare.image, "image to judge")->required()->type_name("FILE");
@@ -273,7 +288,7 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     sub.add_option("-o,--output", compare.difference,
-                   "difference image: relative error (.exr .pfm .hdr), or shown round grey (.png "
+                   "difference image: relative error (.exr .pfm), or shown round grey (.png "
                    ".jpg)")
         ->type_name("FILE");
     sub.add_option("--full-scale", compare.full_scale,

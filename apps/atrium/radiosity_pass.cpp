@@ -76,7 +76,8 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
   RadiosityRun run;
   run.summary = summarise(result);
   if (want_mesh) {
-    run.mesh = radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);
+    run.mesh =
+        radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);
   }
   run.field = std::move(result.field);
   session.clock.leave();

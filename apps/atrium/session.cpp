@@ -9,21 +9,20 @@
 namespace atrium::app {
 
 Session::Session(const CommonOptions& options, std::stop_token stop)
-    : progress(options.quiet), options_(options), stop_(std::move(stop)), threads_(options.threads) {}
+    : progress(options.quiet),
+      options_(options),
+      stop_(std::move(stop)),
+      threads_(options.threads) {}
 
-scene::Control Session::control_without_stop(const std::string& phase) {
+scene::Control Session::control(const std::string& phase) {
   clock.enter(phase);
   scene::Control control;
-  control.progress = [this, phase](std::string_view part, double fraction, std::string_view remark) {
+  control.stop = stop_;
+  control.progress = [this, phase](std::string_view part, double fraction,
+                                   std::string_view remark) {
     clock.enter(part == "mesh" || part == "direct" ? part : std::string_view(phase));
     progress.report(part, fraction, remark);
   };
-  return control;
-}
-
-scene::Control Session::control(const std::string& phase) {
-  scene::Control control = control_without_stop(phase);
-  control.stop = stop_;
   return control;
 }
 
@@ -58,7 +57,8 @@ void show_warnings(Progress& progress, const std::vector<std::string>& warnings)
 
 std::vector<std::size_t> select_cameras(const std::string& request,
                                         const std::vector<scene::Camera>& cameras) {
-  if (request.empty()) return cameras.empty() ? std::vector<std::size_t>{} : std::vector<std::size_t>{0};
+  if (request.empty())
+    return cameras.empty() ? std::vector<std::size_t>{} : std::vector<std::size_t>{0};
   if (cameras.empty()) throw Error("--camera " + request + ": the scene has no cameras");
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (cameras[i].name == request) return {i};
@@ -74,8 +74,8 @@ std::vector<std::size_t> select_cameras(const std::string& request,
   throw Error("--camera " + request + ": unknown; the scene has " + camera_list(cameras));
 }
 
-LoadedScene load_scene(Session& session, const SceneOptions& options, const std::string& camera,
-                       bool follow_view) {
+LoadedScene load_scene(Session& session, const SceneOptions& options,
+                       const LoadSettings& settings) {
   session.clock.enter("load");
   session.progress.report("load", 0.0, {});
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
@@ -83,13 +83,13 @@ LoadedScene load_scene(Session& session, const SceneOptions& options, const std:
       scene::read_model(files, {.emissive_nits_per_unit = options.nits_per_emissive_unit});
 
   LoadedScene loaded;
-  loaded.views = select_cameras(camera, model.cameras);
+  loaded.views = select_cameras(settings.camera, model.cameras);
   scene::BuildOptions build;
   build.pane_detection = options.pane_detection;
-  if (follow_view && loaded.views.size() == 1) build.view = model.cameras[loaded.views[0]];
+  if (settings.follow_view && loaded.views.size() == 1) build.view = model.cameras[loaded.views[0]];
   session.progress.report("load", 0.5, {});
   loaded.scene = std::make_unique<scene::Scene>(scene::build_scene(std::move(model), build));
-  show_warnings(session.progress, loaded.scene->report.warnings);
+  if (settings.show_warnings) show_warnings(session.progress, loaded.scene->report.warnings);
 
   loaded.query = std::make_unique<scene::RayQuery>(*loaded.scene);
   loaded.features = scene::find_features(*loaded.scene);

@@ -28,8 +28,6 @@ class Session {
   /// For a library call; `phase` is what its time counts as, except for the parts that it reports
   /// under the name of another known phase.
   [[nodiscard]] scene::Control control(const std::string& phase);
-  /// ... for a short piece of work that is done after an interrupt, too.
-  [[nodiscard]] scene::Control control_without_stop(const std::string& phase);
   /// Only with --verbose.
   void detail(const std::string& line);
 
@@ -54,9 +52,14 @@ struct LoadedScene {
 [[nodiscard]] std::vector<std::size_t> select_cameras(const std::string& request,
                                                       const std::vector<scene::Camera>& cameras);
 
-/// Reads, repairs, indexes. Warnings go to stderr.
-/// \param follow_view  tessellate subdivision surfaces for the one camera asked for.
+struct LoadSettings {
+  std::string camera;         ///< as --camera
+  bool follow_view = false;   ///< tessellate subdivision surfaces for the one camera asked for
+  bool show_warnings = true;  ///< on stderr
+};
+
+/// Reads, repairs, indexes.
 [[nodiscard]] LoadedScene load_scene(Session& session, const SceneOptions& options,
-                                     const std::string& camera, bool follow_view);
+                                     const LoadSettings& settings);
 
 }  // namespace atrium::app

@@ -30,10 +30,11 @@ void check_outputs(const SolveCommand& c) {
 int run_solve(const SolveCommand& c, std::stop_token stop) {
   check_outputs(c);
   if (!radiosity_available()) {
-    throw RuntimeFailure("solve: radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
+    throw RuntimeFailure(
+        "solve: radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
   }
   Session session(c.common, std::move(stop));
-  const LoadedScene loaded = load_scene(session, c.scene, "", /*follow_view=*/false);
+  const LoadedScene loaded = load_scene(session, c.scene, {});
   if (session.interrupted()) return kInterrupted;
   std::string why;
   if (!radiosity_needed(loaded.features, why)) throw Error("solve: nothing to solve: " + why);
