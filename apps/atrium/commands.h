@@ -1,0 +1,17 @@
+#pragma once
+
+#include <stop_token>
+
+#include "options.h"
+
+namespace atrium::app {
+
+// One file per subcommand. They return the exit code and throw Error or RuntimeFailure.
+int run_render(const RenderCommand& command, std::stop_token stop);
+int run_solve(const SolveCommand& command, std::stop_token stop);
+int run_info(const InfoCommand& command, std::stop_token stop);
+int run_compare(const CompareCommand& command);
+
+inline constexpr int kInterrupted = 130;
+
+}  // namespace atrium::app

@@ -1,0 +1,209 @@
+#include <cstdio>
+#include <numbers>
+
+#include "commands.h"
+#include "common/json.h"
+#include "material/error.h"
+#include "scene/image_io.h"
+#include "scene/output_file.h"
+#include "scene/scene_io.h"
+#include "scene/solution_io.h"
+#include "statistics.h"
+
+namespace atrium::app {
+
+namespace {
+
+void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+/// "name: value" lines or JSON members, whichever was asked for.
+class Report {
+ public:
+  explicit Report(bool json) : json_(json) {
+    if (json_) writer.begin_object();
+  }
+  template <class T>
+  void add(const char* name, const T& value, const char* unit = "") {
+    if (json_) {
+      writer.member(name, value);
+    } else {
+      print(std::string(name) + ": " + text(value) + (*unit ? " " : "") + unit + "\n");
+    }
+  }
+  void list(const char* name, const std::vector<std::string>& items) {
+    if (json_) writer.begin_array(name);
+    if (!json_ && !items.empty()) print(std::string(name) + ":\n");
+    for (const std::string& item : items) {
+      json_ ? writer.element(item) : print("  " + item + "\n");
+    }
+    if (json_) writer.end();
+  }
+  void finish() {
+    if (!json_) return;
+    writer.end();
+    print(writer.text());
+  }
+  [[nodiscard]] bool json() const { return json_; }
+  JsonWriter writer;
+
+ private:
+  static std::string text(const std::string& v) { return v; }
+  static std::string text(std::uint64_t v) { return std::to_string(v); }
+  static std::string text(int v) { return std::to_string(v); }
+  static std::string text(double v) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.6g", v);
+    return buffer;
+  }
+  bool json_;
+};
+
+void info_luminaire(const std::string& file, Report& r) {
+  const scene::IntensityProfile profile = scene::read_ies(file);
+  double largest = 0.0;
+  for (const double c : profile.candela) largest = std::max(largest, c);
+  r.add("luminaire", file);
+  r.add("flux", profile.flux(), "lm");
+  r.add("largest intensity", largest, "cd");
+  r.add("vertical angles", static_cast<std::uint64_t>(profile.theta_deg.size()));
+  r.add("horizontal angles", static_cast<std::uint64_t>(profile.phi_deg.size()));
+  r.add("symmetry",
+        std::string(profile.phi_deg.size() == 1 ? "round" : "none or planes, unfolded"));
+}
+
+void info_image(const std::string& file, Report& r) {
+  const scene::Image image = scene::read_image(file);
+  r.add("image", file);
+  r.add("width", image.width);
+  r.add("height", image.height);
+  r.list("channels", image.channels);
+  std::vector<std::string> metadata;
+  for (const auto& [key, value] : image.metadata) metadata.push_back(key + ": " + value);
+  r.list("metadata", metadata);
+}
+
+void info_solution(const std::string& file, Report& r) {
+  const scene::Solution s = scene::read_solution(file);
+  r.add("radiosity solution", file);
+  r.add("elements", static_cast<std::uint64_t>(s.field.element_count()));
+  r.add("facets", static_cast<std::uint64_t>(s.field.facets.size()));
+  r.add("spectrum", s.basis);
+  r.add("unit", s.field.unit);
+  r.add("made with", s.options);
+}
+
+void add_load_report(const scene::LoadReport& l, Report& r) {
+  const std::pair<const char*, std::uint64_t> counts[] = {
+      {"triangles read", l.triangles_read},
+      {"degenerate triangles dropped", l.degenerate_dropped},
+      {"duplicate triangles dropped", l.duplicate_dropped},
+      {"non-finite triangles dropped", l.non_finite_dropped},
+      {"vertices welded", l.vertices_welded},
+      {"triangles flipped", l.triangles_flipped},
+      {"non-manifold edges", l.non_manifold_edges},
+      {"T-junctions", l.t_junctions},
+      {"closed meshes", l.meshes_closed},
+      {"shared meshes", l.meshes_shared},
+      {"meshes without normals", l.normals_made},
+      {"panes recognised", l.panes_recognised},
+      {"triangles of subdivision surfaces", l.subdivision_triangles}};
+  if (r.json()) r.writer.begin_object("load_report");
+  for (const auto& [name, value] : counts) {
+    if (r.json() || value != 0) r.add(name, value);
+  }
+  if (r.json()) r.writer.end();
+}
+
+std::string camera_text(const scene::Camera& camera, std::size_t index) {
+  const char* kind = camera.kind == scene::Camera::Kind::Perspective    ? "perspective"
+                     : camera.kind == scene::Camera::Kind::Orthographic ? "orthographic"
+                                                                        : "panorama";
+  return std::to_string(index) + (camera.name.empty() ? "" : " \"" + camera.name + "\"") + ", " +
+         kind;
+}
+
+std::string size_text(const scene::Bounds& bounds) {
+  if (bounds.isEmpty()) return "empty";
+  const Vec3d s = bounds.sizes();
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3f x %.3f x %.3f", s.x(), s.y(), s.z());
+  return text;
+}
+
+/// Per light kind and count, in words.
+std::vector<std::string> light_list(const scene::Features& f) {
+  std::vector<std::string> list;
+  const auto add = [&](std::uint64_t n, const char* what) {
+    if (n != 0) list.push_back(std::to_string(n) + " " + what);
+  };
+  add(f.emissive_triangles, "emissive triangles");
+  add(f.point_lights, "point lights");
+  add(f.spot_lights, "spot lights");
+  add(f.directional_lights, "directional lights");
+  add(f.profile_lights, "luminaires with measured intensity");
+  if (f.environment) list.push_back("environment");
+  return list;
+}
+
+void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
+  CommonOptions silent;
+  silent.quiet = true;
+  Session session(silent, std::move(stop));
+  LoadSettings settings;
+  settings.show_warnings = false;  // they are part of the report
+  const LoadedScene loaded = load_scene(session, c.scene, settings);
+  const scene::Scene& scene = *loaded.scene;
+  r.add("triangles", scene.triangle_count());
+  r.add("objects", static_cast<std::uint64_t>(scene.objects.size()));
+  r.add("meshes", static_cast<std::uint64_t>(scene.meshes.size()));
+  r.add("materials", static_cast<std::uint64_t>(scene.materials.size()));
+  r.add("textures", static_cast<std::uint64_t>(scene.textures.size()));
+  r.add("size", size_text(scene.bounds), "m");
+  r.add("unit of radiance",
+        std::string(scene.unit == scene::RadianceUnit::Nit ? "cd/m^2" : "W/(sr m^2)"));
+  r.add("spectrum", loaded.basis.describe());
+  r.list("lights", light_list(loaded.features));
+  std::vector<std::string> cameras;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    cameras.push_back(camera_text(scene.cameras[i], i));
+  }
+  r.list("cameras", cameras);
+  add_load_report(scene.report, r);
+  if (r.json()) {
+    add_features(r.writer, loaded.features);
+  } else {
+    std::vector<std::string> needed, skipped;
+    for (const scene::Decision& d : scene::decide(loaded.features)) {
+      (d.needed ? needed : skipped).push_back(d.what + ": " + d.reason);
+    }
+    r.list("needed", needed);
+    r.list("skipped", skipped);
+  }
+  r.list("warnings", scene.report.warnings);
+}
+
+}  // namespace
+
+int run_info(const InfoCommand& c, std::stop_token stop) {
+  const std::string& first = c.scene.files.front();
+  const std::string ending = scene::file_ending(first);
+  const bool image = scene::is_image_ending(first);
+  const bool single = image || ending == ".ies" || ending == ".atrium";
+  if (single && c.scene.files.size() > 1) {
+    throw Error(first + ": is no scene; one luminaire, image or solution at a time");
+  }
+  Report report(c.json);
+  if (ending == ".ies") {
+    info_luminaire(first, report);
+  } else if (ending == ".atrium") {
+    info_solution(first, report);
+  } else if (image) {
+    info_image(first, report);
+  } else {
+    info_scene(c, std::move(stop), report);
+  }
+  report.finish();
+  return 0;
+}
+
+}  // namespace atrium::app

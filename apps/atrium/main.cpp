@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "commands.h"
+#include "common/interrupt.h"
+#include "material/error.h"
+
+namespace {
+
+using namespace atrium::app;
+
+int fail(int code, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fprintf(stderr, "atrium: error: %s\n", message.c_str());
+  return code;
+}
+
+struct Run {
+  std::stop_token stop;
+  int operator()(const Finished& c) const { return c.code; }
+  int operator()(const RenderCommand& c) const { return run_render(c, stop); }
+  int operator()(const SolveCommand& c) const { return run_solve(c, stop); }
+  int operator()(const InfoCommand& c) const { return run_info(c, stop); }
+  int operator()(const CompareCommand& c) const { return run_compare(c); }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Command command = parse_command_line(argc, argv);
+    if (const auto* finished = std::get_if<Finished>(&command)) return finished->code;
+    const std::stop_source interrupts = watch_interrupts();
+    return std::visit(Run{interrupts.get_token()}, command);
+  } catch (const atrium::Error& e) {
+    return fail(2, e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(1, "out of memory");
+  } catch (const std::exception& e) {
+    return fail(1, e.what());
+  }
+}

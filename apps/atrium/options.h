@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "trace/render.h"
+#include "trace/tone_map.h"
+
+// What the command line says, as values. Every default exists once: here.
+namespace atrium::app {
+
+struct CommonOptions {
+  int threads = 0;  ///< 0: one per core
+  bool quiet = false;
+  bool verbose = false;
+  std::string stats;         ///< JSON file; empty: none
+  std::string command_line;  ///< as typed, for metadata
+};
+
+struct SceneOptions {
+  std::vector<std::string> files;
+  double nits_per_emissive_unit = 1.0;
+  bool pane_detection = true;
+  std::string spectrum = "auto";
+};
+
+enum class Quality { Draft, Normal, High };
+enum class SolverChoice { Rows, Shooting, Matrix };
+enum class IndirectChoice { Auto, Mesh, Gather };
+
+/// Effort that a quality stands for.
+struct Effort {
+  int samples;               ///< of a pixel
+  trace::Indirect indirect;  ///< what IndirectChoice::Auto means
+  std::uint32_t max_elements;
+  int row_rays, gather_rays, direct_samples;
+  std::uint64_t caustic_photons;
+};
+[[nodiscard]] Effort effort_of(Quality quality);
+
+struct SolveSettings {
+  SolverChoice solver = SolverChoice::Rows;
+  Quality quality = Quality::Normal;
+  double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
+  std::uint64_t seed = 1;
+};
+
+struct RenderCommand {
+  CommonOptions common;
+  SceneOptions scene;
+  SolveSettings solve;
+  std::vector<std::string> outputs;
+  std::string camera;  ///< name, index or "all"; empty: the first, or a view that is chosen
+  std::optional<std::array<int, 2>> size;
+  std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};
+  trace::Method method = trace::Method::Hybrid;
+  trace::Mode mode = trace::Mode::Radiometric;
+  IndirectChoice indirect = IndirectChoice::Auto;
+  int samples = 0;  ///< 0: from the quality
+  bool components = false;
+  trace::ToneMapOptions tone;
+  std::string solution;  ///< read
+  std::string save_solution;
+};
+
+struct SolveCommand {
+  CommonOptions common;
+  SceneOptions scene;
+  SolveSettings solve;
+  std::vector<std::string> outputs;
+};
+
+struct InfoCommand {
+  SceneOptions scene;
+  bool json = false;
+};
+
+struct CompareCommand {
+  std::string image, reference;
+  std::string difference;   ///< output, may be empty
+  double full_scale = 0.2;  ///< of a difference shown in 8 bits
+  bool json = false;
+};
+
+/// Nothing left to do but to leave with a code (help, version, configuration printed).
+struct Finished {
+  int code = 0;
+};
+
+using Command = std::variant<Finished, RenderCommand, SolveCommand, InfoCommand, CompareCommand>;
+
+/// \throws Error  on wrong usage, one line.
+[[nodiscard]] Command parse_command_line(int argc, char** argv);
+
+}  // namespace atrium::app

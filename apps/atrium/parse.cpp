@@ -1,0 +1,361 @@
+// The only code that sees CLI11.
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "material/error.h"
+#include "options.h"
+#include "scene/image_io.h"
+#include "scene/output_file.h"
+
+namespace atrium::app {
+
+namespace {
+
+/// Texts of options that are checked and converted together after parsing.
+struct Texts {
+  std::string camera, size, crop, exposure = "auto", tone = "filmic", method = "hybrid",
+                                  quality = "normal", indirect = "auto", solver = "rows",
+                                  mode = "radiometric", emissive_unit = "nit";
+};
+
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string join(int argc, char** argv) {
+  std::string line = "atrium";
+  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
+  return line;
+}
+
+/// Numbers between separators; the whole text must be used up.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(const std::string& text, char separator) {
+  std::array<double, N> result{};
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    const std::size_t end = i + 1 < N ? text.find(separator, at) : text.size();
+    if (end == std::string::npos || end == at) return std::nullopt;
+    const std::string part = text.substr(at, end - at);
+    std::size_t used = 0;
+    try {
+      result[i] = std::stod(part, &used);
+    } catch (const std::exception&) {
+      return std::nullopt;
+    }
+    if (used != part.size() || !std::isfinite(result[i])) return std::nullopt;
+    at = end + 1;
+  }
+  return result;
+}
+
+std::array<int, 2> parse_size(const std::string& text) {
+  const auto n = numbers<2>(text, 'x');
+  const auto fits = [](double v) { return v >= 1.0 && v <= 65536.0 && v == std::floor(v); };
+  if (!n || !fits((*n)[0]) || !fits((*n)[1])) {
+    throw Error("--size " + text + ": is not WIDTHxHEIGHT in pixels, 1 to 65536 each");
+  }
+  return {static_cast<int>((*n)[0]), static_cast<int>((*n)[1])};
+}
+
+std::array<double, 4> parse_crop(const std::string& text) {
+  const auto n = numbers<4>(text, ',');
+  if (!n || !((*n)[0] >= 0.0 && (*n)[0] < (*n)[2] && (*n)[2] <= 1.0 && (*n)[1] >= 0.0 &&
+              (*n)[1] < (*n)[3] && (*n)[3] <= 1.0)) {
+    throw Error("--crop " + text +
+                ": is not X0,Y0,X1,Y1 with 0 <= X0 < X1 <= 1, 0 <= Y0 < Y1 <= 1");
+  }
+  return *n;
+}
+
+std::optional<double> parse_exposure(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  const auto n = numbers<1>(text, ' ');
+  if (!n || !(std::abs((*n)[0]) <= 60.0)) {
+    throw Error("--exposure " + text + ": is neither auto nor an exposure value (-60 to 60)");
+  }
+  return (*n)[0];
+}
+
+template <class T>
+T choose(const std::string& text, std::initializer_list<std::pair<const char*, T>> known) {
+  for (const auto& [name, value] : known) {
+    if (text == name) return value;
+  }
+  throw Error(text + ": unknown choice");  // IsMember has refused it before
+}
+
+void add_common(CLI::App& app, CommonOptions& o) {
+  app.add_option("--threads", o.threads, "threads; 0: one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--stats", o.stats, "write phases, counters, memory, errors to this JSON file");
+  CLI::Option* quiet = app.add_flag("--quiet,-q", o.quiet, "no progress; warnings stay");
+  app.add_flag("--verbose,-v", o.verbose, "say what is decided and why")->excludes(quiet);
+}
+
+void add_scene(CLI::App& app, SceneOptions& o, Texts& t) {
+  app.add_option("scene", o.files, "scene files, put together: .glb .gltf .obj .ply .stl .yaml")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--emissive-unit", t.emissive_unit,
+                 "what emissive numbers of models are: nit, or radiance in W/(sr m^2)")
+      ->check(CLI::IsMember({"nit", "radiance"}))
+      ->capture_default_str();
+  app.add_flag("!--no-pane-detection", o.pane_detection,
+               "keep closed solids with two parallel faces as solids");
+  app.add_option("--spectrum", o.spectrum, "spectral lanes: auto, grey, rgb, 4 or 8")
+      ->check(CLI::IsMember({"auto", "grey", "rgb", "4", "8"}))
+      ->capture_default_str();
+}
+
+void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
+  app.add_option("--quality", t.quality, "effort: draft, normal or high")
+      ->check(CLI::IsMember({"draft", "normal", "high"}))
+      ->capture_default_str();
+  app.add_option("--solver", t.solver, "radiosity: rows, shooting or matrix")
+      ->check(CLI::IsMember({"rows", "shooting", "matrix"}))
+      ->capture_default_str();
+  app.add_option("--time-limit", o.time_limit, "stop computing after this time [s]; 0: none")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
+}
+
+void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
+  add_scene(app, o.scene, t);
+  app.add_option("-o,--output", o.outputs,
+                 "image, may be repeated: .exr (linear, layers) .pfm .hdr (linear) .png .jpg "
+                 "(tone mapped)")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--camera", o.camera, "name or number (from 0), or all: one image each");
+  app.add_option("--size", t.size, "WxH; default: 640 wide with the camera's aspect, else 640x480")
+      ->type_name("WxH");
+  app.add_option("--crop", t.crop, "part of the image, as shares of width and height")
+      ->type_name("X0,Y0,X1,Y1");
+  app.add_option("--exposure", t.exposure, "auto, or the exposure value (EV at ISO 100)")
+      ->capture_default_str();
+  app.add_option("--tone", t.tone, "curve for 8-bit images: filmic or srgb")
+      ->check(CLI::IsMember({"filmic", "srgb"}))
+      ->capture_default_str();
+  app.add_option("--method", t.method,
+                 "hybrid (radiosity and ray tracing), path (unbiased reference) or direct (no "
+                 "inter-reflection)")
+      ->check(CLI::IsMember({"hybrid", "path", "direct"}))
+      ->capture_default_str();
+  add_solve(app, o.solve, t);
+  app.add_option("--samples", o.samples, "of a pixel; 0: from the quality (16, 64, 256)")
+      ->check(CLI::Range(0, 1 << 24))
+      ->capture_default_str();
+  app.add_option("--indirect", t.indirect,
+                 "inter-reflection in the picture: mesh (interpolated), gather (hemisphere rays), "
+                 "auto: mesh for drafts")
+      ->check(CLI::IsMember({"auto", "mesh", "gather"}))
+      ->capture_default_str();
+  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
+      ->check(CLI::IsMember({"radiometric", "paper"}))
+      ->capture_default_str();
+  app.add_flag("--components", o.components, "layers C1..C6 in .exr");
+  app.add_option("--solution", o.solution, "use this radiosity solution instead of solving")
+      ->type_name("FILE.atrium");
+  app.add_option("--save-solution", o.save_solution, "keep the radiosity solution")
+      ->type_name("FILE.atrium");
+  add_common(app, o.common);
+}
+
+bool any_output(const RenderCommand& o, bool (*is)(const std::filesystem::path&)) {
+  return std::any_of(o.outputs.begin(), o.outputs.end(),
+                     [&](const std::string& f) { return is(f); });
+}
+
+/// Options that would be ignored, or that say two things, are mistakes worth a word.
+void check_contradictions(const CLI::App& app, const RenderCommand& o) {
+  const auto given = [&](const char* name) { return app.count(name) > 0; };
+  const auto refuse = [&](const char* name, const std::string& why) {
+    if (given(name)) throw Error(std::string(name) + ": " + why);
+  };
+  if (o.method != trace::Method::Hybrid) {
+    const std::string why = "has no meaning with --method " +
+                            std::string(o.method == trace::Method::Path ? "path" : "direct") +
+                            ", which uses no radiosity";
+    for (const char* name : {"--solution", "--save-solution", "--solver", "--indirect"}) {
+      refuse(name, why);
+    }
+  }
+  if (o.method == trace::Method::Path && o.mode == trace::Mode::Paper) {
+    throw Error("--mode paper: --method path needs energy-conserving materials (radiometric)");
+  }
+  if (!any_output(o, scene::is_display_ending)) {
+    for (const char* name : {"--exposure", "--tone"}) {
+      refuse(name, "only 8-bit images are tone mapped: there is no .png or .jpg output");
+    }
+  }
+  if (!any_output(o,
+                  [](const std::filesystem::path& f) { return scene::file_ending(f) == ".exr"; })) {
+    refuse("--components", "only .exr holds layers: there is no such output");
+  }
+  if (!o.solution.empty()) {
+    refuse("--save-solution", "there is nothing new to save with --solution");
+    refuse("--solver", "nothing is solved with --solution");
+  }
+}
+
+RenderCommand finish(RenderCommand o, const Texts& t, const CLI::App& app) {
+  using trace::Method, trace::Mode;
+  using Curve = trace::ToneMapOptions::Curve;
+  if (!t.size.empty()) o.size = parse_size(t.size);
+  if (!t.crop.empty()) o.crop = parse_crop(t.crop);
+  o.tone.ev = parse_exposure(t.exposure);
+  o.tone.curve = choose<Curve>(t.tone, {{"filmic", Curve::Filmic}, {"srgb", Curve::Srgb}});
+  o.method = choose<Method>(
+      t.method, {{"hybrid", Method::Hybrid}, {"path", Method::Path}, {"direct", Method::Direct}});
+  o.mode = choose<Mode>(t.mode, {{"radiometric", Mode::Radiometric}, {"paper", Mode::Paper}});
+  o.indirect = choose<IndirectChoice>(t.indirect, {{"auto", IndirectChoice::Auto},
+                                                   {"mesh", IndirectChoice::Mesh},
+                                                   {"gather", IndirectChoice::Gather}});
+  check_contradictions(app, o);
+  return o;
+}
+
+void finish(SolveSettings& o, const Texts& t) {
+  o.quality = choose<Quality>(
+      t.quality, {{"draft", Quality::Draft}, {"normal", Quality::Normal}, {"high", Quality::High}});
+  o.solver = choose<SolverChoice>(t.solver, {{"rows", SolverChoice::Rows},
+                                             {"shooting", SolverChoice::Shooting},
+                                             {"matrix", SolverChoice::Matrix}});
+}
+
+void finish(SceneOptions& o, const Texts& t) {
+  // 179 lm/W: the luminous efficacy of white light where watts have to become lumens (DESIGN 8).
+  o.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
+}
+
+/// The parser and the values that it fills.
+struct Parser {
+  CLI::App app{"Atrium: light in buildings by radiosity and ray tracing", "atrium"};
+  RenderCommand render;
+  SolveCommand solve;
+  InfoCommand info;
+  CompareCommand compare;
+  Texts render_texts, solve_texts, info_texts;
+  bool print_config = false;
+
+  Parser() {
+    app.set_version_flag("--version", std::string("atrium ") + ATRIUM_VERSION);
+    app.set_config("--config", "", "read options from a file as --print-config writes it")
+        ->configurable(false);
+    app.add_flag("--print-config", print_config, "print all options in effect and leave")
+        ->configurable(false);
+    app.require_subcommand(1);
+    app.fallthrough();
+    add_render(*app.add_subcommand("render", "render a picture of a scene"), render, render_texts);
+    add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
+    add_info_command(*app.add_subcommand("info", "what a file contains, needs and goes without"));
+    add_compare_command(*app.add_subcommand("compare", "error measures between two images"));
+  }
+
+ private:
+  void add_solve_command(CLI::App& sub) {
+    add_scene(sub, solve.scene, solve_texts);
+    sub.add_option("-o,--output", solve.outputs,
+                   "result, may be repeated: .vtp .vtu (mesh with arrays), .atrium (for render "
+                   "--solution)")
+        ->required()
+        ->type_name("FILE");
+    add_solve(sub, solve.solve, solve_texts);
+    add_common(sub, solve.common);
+  }
+  void add_info_command(CLI::App& sub) {
+    add_scene(sub, info.scene, info_texts);
+    sub.get_option("scene")->description(
+        "scene files, put together; or one luminaire (.ies), image or solution (.atrium)");
+    sub.add_flag("--json", info.json, "for programs");
+  }
+  void add_compare_command(CLI::App& sub) {
+    sub.add_option("image", compare.image, "image to judge")->required()->type_name("FILE");
+    sub.add_option("reference", compare.reference,
+                   "image taken as true; its stderr.* layers, if any, are accounted for")
+        ->required()
+        ->type_name("FILE");
+    sub.add_option("-o,--output", compare.difference,
+                   "difference image: relative error (.exr .pfm), or shown round grey (.png "
+                   ".jpg)")
+        ->type_name("FILE");
+    sub.add_option("--full-scale", compare.full_scale,
+                   "relative error that is white or black in 8-bit difference images")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->capture_default_str();
+    sub.add_flag("--json", compare.json, "for programs");
+  }
+};
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+Command finished_command(Parser& p, const std::string& command_line) {
+  const CLI::App& sub = *p.app.get_subcommands().front();
+  const std::string& name = sub.get_name();
+  if (name == "render") {
+    finish(p.render.scene, p.render_texts);
+    finish(p.render.solve, p.render_texts);
+    p.render.common.command_line = command_line;
+    return finish(p.render, p.render_texts, sub);
+  }
+  if (name == "solve") {
+    finish(p.solve.scene, p.solve_texts);
+    finish(p.solve.solve, p.solve_texts);
+    p.solve.common.command_line = command_line;
+    return p.solve;
+  }
+  if (name == "info") {
+    finish(p.info.scene, p.info_texts);
+    return p.info;
+  }
+  return p.compare;
+}
+
+}  // namespace
+
+Effort effort_of(Quality quality) {
+  switch (quality) {
+    case Quality::Draft:
+      return {16, trace::Indirect::Mesh, 15000, 32, 32, 8, 200000};
+    case Quality::Normal:
+      return {64, trace::Indirect::Gather, 60000, 64, 128, 16, 1000000};
+    case Quality::High:
+      break;
+  }
+  return {256, trace::Indirect::Gather, 150000, 128, 512, 32, 4000000};
+}
+
+Command parse_command_line(int argc, char** argv) {
+  Parser p;
+  try {
+    p.app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto subs = p.app.get_subcommands();
+    std::cout << (subs.empty() ? p.app.help() : subs.front()->help());
+    return Finished{0};
+  } catch (const CLI::CallForVersion& e) {
+    std::cout << e.what() << '\n';
+    return Finished{0};
+  } catch (const CLI::ParseError& e) {
+    throw Error(first_line(e.what()) + " (see atrium --help)");
+  }
+  const Command command = finished_command(p, join(argc, argv));
+  if (!p.print_config) return command;
+  const CLI::App& sub = *p.app.get_subcommands().front();
+  std::cout << '[' << sub.get_name() << "]\n" << sub.config_to_str(true, false);
+  return Finished{0};
+}
+
+}  // namespace atrium::app

@@ -1,0 +1,100 @@
+#include "radiosity_pass.h"
+
+#include "material/error.h"
+
+#ifdef ATRIUM_WITH_RADIOSITY
+#include "radiosity/solve.h"
+#endif
+
+namespace atrium::app {
+
+bool radiosity_needed(const scene::Features& features, std::string& why) {
+  if (!features.diffuse && !features.diffuse_transmission) {
+    why = "no surface reflects or transmits light diffusely";
+  } else if (!features.any_light()) {
+    why = "nothing emits light";
+  }
+  return why.empty();
+}
+
+std::string describe(const SolveSettings& s) {
+  const char* solver = s.solver == SolverChoice::Rows       ? "rows"
+                       : s.solver == SolverChoice::Shooting ? "shooting"
+                                                            : "matrix";
+  const char* quality = s.quality == Quality::Draft    ? "draft"
+                        : s.quality == Quality::Normal ? "normal"
+                                                       : "high";
+  return std::string("solver ") + solver + ", quality " + quality + ", seed " +
+         std::to_string(s.seed);
+}
+
+#ifdef ATRIUM_WITH_RADIOSITY
+
+namespace {
+
+radiosity::SolveOptions solve_options(const SolveSettings& settings, double time_limit) {
+  const Effort effort = effort_of(settings.quality);
+  radiosity::SolveOptions o;
+  o.solver = settings.solver == SolverChoice::Rows       ? radiosity::Solver::Rows
+             : settings.solver == SolverChoice::Shooting ? radiosity::Solver::Shooting
+                                                         : radiosity::Solver::Matrix;
+  o.max_elements = effort.max_elements;
+  o.row_rays = effort.row_rays;
+  o.gather_rays = effort.gather_rays;
+  o.direct_samples = effort.direct_samples;
+  o.caustic_photons = effort.caustic_photons;
+  o.seed = settings.seed;
+  o.time_limit = time_limit;
+  return o;
+}
+
+SolveSummary summarise(const radiosity::SolveResult& r) {
+  SolveSummary s;
+  s.elements = r.field.element_count();
+  s.iterations = r.iterations;
+  s.residual = r.residual;
+  s.error_estimate = r.error_estimate;
+  s.complete = r.complete;
+  s.stopped_by = r.stopped_by;
+  s.emitted = r.flux.emitted;
+  s.absorbed = r.flux.absorbed;
+  s.escaped = r.flux.escaped;
+  s.flux_error = r.flux.standard_error;
+  s.counters = r.counters;
+  return s;
+}
+
+}  // namespace
+
+bool radiosity_available() { return true; }
+
+RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
+                           const SolveSettings& settings, double time_limit, bool want_mesh) {
+  radiosity::SolveResult result =
+      radiosity::solve(*loaded.query, loaded.basis, solve_options(settings, time_limit),
+                       session.control("radiosity"));
+  RadiosityRun run;
+  run.summary = summarise(result);
+  if (want_mesh) {
+    run.mesh =
+        radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);
+  }
+  run.field = std::move(result.field);
+  session.clock.leave();
+  session.detail("radiosity: " + std::to_string(run.summary.elements) + " elements, " +
+                 std::to_string(run.summary.iterations) + " iterations, stopped by " +
+                 run.summary.stopped_by);
+  return run;
+}
+
+#else
+
+bool radiosity_available() { return false; }
+
+RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool) {
+  throw RuntimeFailure("radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
+}
+
+#endif
+
+}  // namespace atrium::app

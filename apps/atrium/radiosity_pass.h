@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "options.h"
+#include "scene/mesh_io.h"
+#include "scene/surface_field.h"
+#include "session.h"
+#include "statistics.h"
+
+namespace atrium::app {
+
+struct RadiosityRun {
+  scene::SurfaceField field;
+  std::optional<scene::PolygonMesh> mesh;  ///< if asked for
+  SolveSummary summary;
+};
+
+/// false: this build has no radiosity library (ATRIUM_WITH_OPENMESH was off).
+[[nodiscard]] bool radiosity_available();
+
+/// Does light reach a diffuse surface at all? If not the reason is said in `why`.
+[[nodiscard]] bool radiosity_needed(const scene::Features& features, std::string& why);
+
+/// \param time_limit  [s] for this pass, 0: none.  \throws RuntimeFailure  if not available.
+[[nodiscard]] RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
+                                         const SolveSettings& settings, double time_limit,
+                                         bool want_mesh);
+
+/// For people and for files: what the solution was made with.
+[[nodiscard]] std::string describe(const SolveSettings& settings);
+
+}  // namespace atrium::app

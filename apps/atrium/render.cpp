@@ -1,0 +1,265 @@
+#include "trace/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "commands.h"
+#include "material/error.h"
+#include "radiosity_pass.h"
+#include "scene/image_io.h"
+#include "scene/output_file.h"
+#include "scene/solution_io.h"
+#include "statistics.h"
+
+namespace atrium::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One picture to make.
+struct ViewJob {
+  scene::Camera camera;
+  std::string label;  ///< camera's name or number, for messages and file names
+  bool label_files = false;
+};
+
+/// Before hours of work: can everything be written that was asked for?
+void check_outputs(const RenderCommand& c) {
+  std::set<fs::path> seen;
+  for (const std::string& file : c.outputs) {
+    if (!scene::is_image_ending(file)) {
+      throw Error(file + ": unknown image format (known: .exr .hdr .pfm .png .jpg)");
+    }
+    scene::check_output(file);
+    if (!seen.insert(fs::weakly_canonical(file)).second) throw Error(file + ": is given twice");
+  }
+  if (!c.save_solution.empty()) {
+    if (scene::file_ending(c.save_solution) != ".atrium") {
+      throw Error(c.save_solution + ": a solution file ends with .atrium");
+    }
+    scene::check_output(c.save_solution);
+  }
+  if (!c.common.stats.empty()) scene::check_output(c.common.stats);
+}
+
+bool uses_radiosity(const RenderCommand& c) { return c.method == trace::Method::Hybrid; }
+
+std::string view_text(const LoadedScene& loaded, const scene::Camera& camera) {
+  const Vec3d eye = camera.to_scene.translation() + loaded.scene->origin;
+  const Vec3d forward = -camera.to_scene.linear().col(2).normalized();
+  char text[160];
+  std::snprintf(text, sizeof text, "from (%.2f, %.2f, %.2f) m towards (%.2f, %.2f, %.2f)", eye.x(),
+                eye.y(), eye.z(), forward.x(), forward.y(), forward.z());
+  return text;
+}
+
+std::vector<ViewJob> view_jobs(Session& session, const RenderCommand& c,
+                               const LoadedScene& loaded) {
+  std::vector<ViewJob> jobs;
+  if (loaded.views.empty()) {
+    const scene::Camera camera = scene::choose_interior_view(*loaded.scene, *loaded.query);
+    session.progress.note("no camera in the scene: looking " + view_text(loaded, camera));
+    return {{camera, "chosen", false}};
+  }
+  std::set<std::string> used;
+  for (const std::size_t i : loaded.views) {
+    ViewJob job{loaded.scene->cameras[i], loaded.scene->cameras[i].name, c.camera == "all"};
+    if (job.label.empty()) job.label = std::to_string(i);
+    if (!used.insert(job.label).second) job.label += "-" + std::to_string(i);
+    jobs.push_back(job);
+  }
+  if (c.camera.empty() && loaded.scene->cameras.size() > 1) {
+    session.detail("camera: " + jobs[0].label + ", the first of " +
+                   std::to_string(loaded.scene->cameras.size()));
+  }
+  return jobs;
+}
+
+std::array<int, 2> size_for(const RenderCommand& c, const scene::Camera& camera) {
+  if (c.size) return *c.size;
+  constexpr int kWidth = 640;
+  double aspect = camera.aspect > 0.0 ? camera.aspect : 4.0 / 3.0;
+  if (camera.kind == scene::Camera::Kind::Panorama && !(camera.aspect > 0.0)) aspect = 2.0;
+  return {kWidth, static_cast<int>(std::clamp(std::lround(kWidth / aspect), 1L, 65536L))};
+}
+
+/// Seconds that a stage may use: its share of what is left; 0 means no limit was asked for.
+double time_share(const Session& session, const RenderCommand& c, double share) {
+  if (!(c.solve.time_limit > 0.0)) return 0.0;
+  constexpr double kLeast = 1e-3;  // a limit that has passed is still a limit, not "none"
+  return std::max(kLeast, (c.solve.time_limit - session.clock.elapsed()) * share);
+}
+
+scene::SurfaceField load_solution(const RenderCommand& c, const LoadedScene& loaded) {
+  scene::Solution solution = scene::read_solution(c.solution);
+  scene::check_solution(solution, *loaded.scene, loaded.basis.describe(), c.solution);
+  return std::move(solution.field);
+}
+
+/// The field that the picture reads; empty if none is needed.
+scene::SurfaceField find_field(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+                               Statistics& statistics) {
+  std::string why;
+  if (!uses_radiosity(c)) {
+    why = "the method uses none";
+  } else if (!c.solution.empty()) {
+    why = "read from " + c.solution;
+    session.detail("skipped: radiosity: " + why);
+    statistics.radiosity_skipped = why;
+    return load_solution(c, loaded);
+  } else {
+    (void)radiosity_needed(loaded.features, why);
+  }
+  if (!why.empty()) {
+    session.detail("skipped: radiosity: " + why);
+    statistics.radiosity_skipped = why;
+    return {};
+  }
+  RadiosityRun run =
+      run_radiosity(session, loaded, c.solve, time_share(session, c, 0.5), /*want_mesh=*/false);
+  statistics.solve = run.summary;
+  statistics.counters += run.summary.counters;
+  return std::move(run.field);
+}
+
+void save_solution(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+                   const scene::SurfaceField& field) {
+  if (c.save_solution.empty()) return;
+  if (field.empty()) {
+    session.progress.warning(c.save_solution + ": not written, nothing was solved");
+    return;
+  }
+  session.clock.enter("write");
+  scene::write_solution({.field = field,
+                         .scene_hash = scene::hash_scene(*loaded.scene),
+                         .basis = loaded.basis.describe(),
+                         .options = describe(c.solve)},
+                        c.save_solution);
+  session.progress.note("wrote " + c.save_solution);
+}
+
+trace::RenderOptions render_options(const Session& session, const RenderCommand& c,
+                                    const scene::Camera& camera, double time_limit) {
+  const Effort effort = effort_of(c.solve.quality);
+  trace::RenderOptions o;
+  o.method = c.method;
+  o.mode = c.mode;
+  o.indirect = c.indirect == IndirectChoice::Mesh     ? trace::Indirect::Mesh
+               : c.indirect == IndirectChoice::Gather ? trace::Indirect::Gather
+                                                      : effort.indirect;
+  // After an interrupt the picture is one cheap sample of what was solved until then.
+  if (session.interrupted()) o.indirect = trace::Indirect::Mesh;
+  const auto [width, height] = size_for(c, camera);
+  o.width = width;
+  o.height = height;
+  o.crop = c.crop;
+  o.samples = c.samples > 0 ? c.samples : effort.samples;
+  o.time_limit = time_limit;
+  o.seed = c.solve.seed;
+  o.components = c.components;
+  return o;
+}
+
+void add_metadata(scene::Image& image, const RenderCommand& c, const LoadedScene& loaded,
+                  const trace::RenderResult& result) {
+  const bool nits = loaded.scene->unit == scene::RadianceUnit::Nit;
+  image.metadata["Software"] = std::string("atrium ") + ATRIUM_VERSION;
+  image.metadata["atrium:command"] = c.common.command_line;
+  image.metadata["atrium:seed"] = std::to_string(c.solve.seed);
+  image.metadata["atrium:samples"] = std::to_string(result.samples_done);
+  image.metadata["atrium:unit"] = nits ? "cd/m^2" : "W/(sr m^2)";
+  image.metadata["atrium:spectrum"] = loaded.basis.describe();
+  image.metadata["atrium:complete"] = result.complete ? "yes" : "no";
+}
+
+/// NAME.exr, or NAME-camera.exr where one image per camera is written.
+std::string file_for(const std::string& output, const ViewJob& job) {
+  if (!job.label_files) return output;
+  std::string label = job.label;
+  for (char& ch : label) {
+    const auto u = static_cast<unsigned char>(ch);
+    if (!std::isalnum(u) && ch != '-' && ch != '_' && ch != '.' && u < 0x80) ch = '_';
+  }
+  const fs::path path(output);
+  return (path.parent_path() / (path.stem().string() + "-" + label + path.extension().string()))
+      .string();
+}
+
+void render_view(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+                 const scene::SurfaceField& field, const ViewJob& job, double time_limit,
+                 Statistics& statistics) {
+  const trace::RenderOptions options = render_options(session, c, job.camera, time_limit);
+  trace::RenderResult result = trace::render(*loaded.query, loaded.basis, job.camera, field,
+                                             options, session.control("render"));
+  statistics.counters += result.counters;
+  session.clock.enter("write");
+  add_metadata(result.image, c, loaded, result);
+  ViewSummary view{.camera = job.label,
+                   .width = result.image.width,
+                   .height = result.image.height,
+                   .samples = result.samples_done,
+                   .error_estimate = result.error_estimate,
+                   .complete = result.complete,
+                   .files = {}};
+  for (const std::string& output : c.outputs) {
+    const std::string file = file_for(output, job);
+    scene::write_image(
+        scene::is_display_ending(file) ? trace::tone_map(result.image, c.tone) : result.image,
+        file);
+    view.files.push_back(file);
+    session.progress.note("wrote " + file);
+  }
+  session.detail(std::to_string(view.samples) + " samples per pixel, estimated error " +
+                 std::to_string(100.0 * view.error_estimate) + " %" +
+                 (view.complete ? "" : ", stopped early"));
+  statistics.views.push_back(std::move(view));
+}
+
+void warn_about_counts(Session& session, const scene::Counters& counters) {
+  if (const auto n = counters[scene::Counter::SamplesDropped]; n > 0) {
+    session.progress.warning(std::to_string(n) + " samples were not finite and were dropped");
+  }
+  if (const auto n = counters[scene::Counter::RaysRefused]; n > 0) {
+    session.progress.warning(std::to_string(n) + " rays were not finite and were not traced");
+  }
+}
+
+}  // namespace
+
+int run_render(const RenderCommand& c, std::stop_token stop) {
+  check_outputs(c);
+  if (uses_radiosity(c) && c.solution.empty() && !radiosity_available()) {
+    throw RuntimeFailure(
+        "--method hybrid: radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off); "
+        "--method path and direct are");
+  }
+  for (const std::string& file : c.scene.files) {
+    if (!fs::exists(file)) throw Error(file + ": cannot be read: no such file");
+  }
+  scene::preload_image_io();
+  Session session(c.common, std::move(stop));
+  Statistics statistics;
+  statistics.seed = c.solve.seed;
+
+  // A solution must fit whatever camera comes later, so the mesh must not depend on this one.
+  const bool own_mesh = c.solution.empty() && c.save_solution.empty();
+  const LoadedScene loaded = load_scene(
+      session, c.scene, {.camera = c.camera, .follow_view = own_mesh, .show_warnings = true});
+  if (session.interrupted()) return kInterrupted;
+  const std::vector<ViewJob> jobs = view_jobs(session, c, loaded);
+  const scene::SurfaceField field = find_field(session, c, loaded, statistics);
+  save_solution(session, c, loaded, field);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (i > 0 && session.interrupted()) break;
+    const double limit = time_share(session, c, 1.0 / static_cast<double>(jobs.size() - i));
+    render_view(session, c, loaded, field, jobs[i], limit, statistics);
+  }
+  warn_about_counts(session, statistics.counters);
+  write_statistics(session, loaded, statistics);
+  return session.interrupted() ? kInterrupted : 0;
+}
+
+}  // namespace atrium::app

@@ -1,0 +1,108 @@
+#include "session.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "material/error.h"
+#include "scene/scene_io.h"
+
+namespace atrium::app {
+
+Session::Session(const CommonOptions& options, std::stop_token stop)
+    : progress(options.quiet),
+      options_(options),
+      stop_(std::move(stop)),
+      threads_(options.threads) {}
+
+scene::Control Session::control(const std::string& phase) {
+  clock.enter(phase);
+  scene::Control control;
+  control.stop = stop_;
+  control.progress = [this, phase](std::string_view part, double fraction,
+                                   std::string_view remark) {
+    clock.enter(part == "mesh" || part == "direct" ? part : std::string_view(phase));
+    progress.report(part, fraction, remark);
+  };
+  return control;
+}
+
+void Session::detail(const std::string& line) {
+  if (options_.verbose) progress.note(line);
+}
+
+namespace {
+
+std::string camera_list(const std::vector<scene::Camera>& cameras) {
+  std::string list;
+  for (std::size_t i = 0; i < cameras.size() && i < 20; ++i) {
+    list += (i == 0 ? "" : ", ") + std::to_string(i);
+    if (!cameras[i].name.empty()) list += " \"" + cameras[i].name + "\"";
+  }
+  return cameras.size() > 20 ? list + ", ..." : list;
+}
+
+constexpr std::size_t kWarningsShown = 10;
+
+void show_warnings(Progress& progress, const std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < std::min(kWarningsShown, warnings.size()); ++i) {
+    progress.warning(warnings[i]);
+  }
+  if (warnings.size() > kWarningsShown) {
+    progress.warning(std::to_string(warnings.size() - kWarningsShown) +
+                     " more warnings; atrium info lists them");
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> select_cameras(const std::string& request,
+                                        const std::vector<scene::Camera>& cameras) {
+  if (request.empty())
+    return cameras.empty() ? std::vector<std::size_t>{} : std::vector<std::size_t>{0};
+  if (cameras.empty()) throw Error("--camera " + request + ": the scene has no cameras");
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (cameras[i].name == request) return {i};
+  }
+  std::vector<std::size_t> all(cameras.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  if (request == "all") return all;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(request.data(), request.data() + request.size(), index);
+  if (error == std::errc() && end == request.data() + request.size() && index < cameras.size()) {
+    return {index};
+  }
+  throw Error("--camera " + request + ": unknown; the scene has " + camera_list(cameras));
+}
+
+LoadedScene load_scene(Session& session, const SceneOptions& options,
+                       const LoadSettings& settings) {
+  session.clock.enter("load");
+  session.progress.report("load", 0.0, {});
+  const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
+  scene::Model model =
+      scene::read_model(files, {.emissive_nits_per_unit = options.nits_per_emissive_unit});
+
+  LoadedScene loaded;
+  loaded.views = select_cameras(settings.camera, model.cameras);
+  scene::BuildOptions build;
+  build.pane_detection = options.pane_detection;
+  if (settings.follow_view && loaded.views.size() == 1) build.view = model.cameras[loaded.views[0]];
+  session.progress.report("load", 0.5, {});
+  loaded.scene = std::make_unique<scene::Scene>(scene::build_scene(std::move(model), build));
+  if (settings.show_warnings) show_warnings(session.progress, loaded.scene->report.warnings);
+
+  loaded.query = std::make_unique<scene::RayQuery>(*loaded.scene);
+  loaded.features = scene::find_features(*loaded.scene);
+  loaded.basis = scene::choose_basis(loaded.features, options.spectrum);
+  session.progress.report("load", 1.0, {});
+  session.detail("scene: " + std::to_string(loaded.scene->triangle_count()) + " triangles in " +
+                 std::to_string(loaded.scene->objects.size()) + " objects");
+  session.detail("spectrum: " + loaded.basis.describe());
+  for (const scene::Decision& d : scene::decide(loaded.features)) {
+    session.detail((d.needed ? "needed:  " : "skipped: ") + d.what + ": " + d.reason);
+  }
+  session.clock.leave();
+  return loaded;
+}
+
+}  // namespace atrium::app

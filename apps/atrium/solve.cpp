@@ -1,0 +1,70 @@
+#include <filesystem>
+
+#include "commands.h"
+#include "material/error.h"
+#include "radiosity_pass.h"
+#include "scene/mesh_io.h"
+#include "scene/output_file.h"
+#include "scene/solution_io.h"
+#include "statistics.h"
+
+namespace atrium::app {
+
+namespace {
+
+bool is_solution(const std::string& file) { return scene::file_ending(file) == ".atrium"; }
+
+/// Before hours of work: can everything be written that was asked for?
+void check_outputs(const SolveCommand& c) {
+  for (const std::string& file : c.outputs) {
+    if (!is_solution(file) && !scene::is_mesh_ending(file)) {
+      throw Error(file + ": unknown format (known: .vtp .vtu .atrium)");
+    }
+    scene::check_output(file);
+  }
+  if (!c.common.stats.empty()) scene::check_output(c.common.stats);
+}
+
+}  // namespace
+
+int run_solve(const SolveCommand& c, std::stop_token stop) {
+  check_outputs(c);
+  if (!radiosity_available()) {
+    throw RuntimeFailure(
+        "solve: radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
+  }
+  Session session(c.common, std::move(stop));
+  const LoadedScene loaded = load_scene(session, c.scene, {});
+  if (session.interrupted()) return kInterrupted;
+  std::string why;
+  if (!radiosity_needed(loaded.features, why)) throw Error("solve: nothing to solve: " + why);
+
+  const bool want_mesh = !std::all_of(c.outputs.begin(), c.outputs.end(), is_solution);
+  RadiosityRun run = run_radiosity(session, loaded, c.solve, c.solve.time_limit, want_mesh);
+
+  session.clock.enter("write");
+  Statistics statistics;
+  statistics.seed = c.solve.seed;
+  statistics.solve = run.summary;
+  statistics.counters = run.summary.counters;
+  if (run.mesh) {
+    run.mesh->field_data["version"] = std::string("atrium ") + ATRIUM_VERSION;
+    run.mesh->field_data["command"] = c.common.command_line;
+  }
+  for (const std::string& file : c.outputs) {
+    if (is_solution(file)) {
+      scene::write_solution({.field = run.field,
+                             .scene_hash = scene::hash_scene(*loaded.scene),
+                             .basis = loaded.basis.describe(),
+                             .options = describe(c.solve)},
+                            file);
+    } else {
+      scene::write_polygon_mesh(*run.mesh, file);
+    }
+    session.progress.note("wrote " + file);
+  }
+  write_statistics(session, loaded, statistics);
+  return session.interrupted() ? kInterrupted : 0;
+}
+
+}  // namespace atrium::app

@@ -1,0 +1,155 @@
+#include "statistics.h"
+
+#include <fstream>
+
+#include "material/error.h"
+#include "scene/output_file.h"
+
+namespace atrium::app {
+
+void write_text(const std::string& text, const std::string& file) {
+  scene::OutputFile output(file);
+  std::ofstream out(output.path(), std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw RuntimeFailure(file + ": writing failed");
+  output.commit();
+}
+
+void add_features(JsonWriter& json, const scene::Features& f) {
+  json.begin_object("features");
+  json.member("diffuse", f.diffuse);
+  json.member("diffuse_transmission", f.diffuse_transmission);
+  json.member("mirrors", f.mirrors);
+  json.member("rough", f.rough);
+  json.member("solids", f.solids);
+  json.member("panes", f.panes);
+  json.member("coupled", f.coupled);
+  json.member("textures", f.textures);
+  json.member("alpha_masks", f.alpha_masks);
+  json.member("absorbing_media", f.absorbing_media);
+  json.member("chromatic", f.chromatic);
+  json.member("wavelength_data", f.wavelength_data);
+  json.member("environment", f.environment);
+  json.member("point_lights", std::uint64_t{f.point_lights});
+  json.member("spot_lights", std::uint64_t{f.spot_lights});
+  json.member("directional_lights", std::uint64_t{f.directional_lights});
+  json.member("profile_lights", std::uint64_t{f.profile_lights});
+  json.member("emissive_triangles", f.emissive_triangles);
+  json.end();
+  json.begin_array("decisions");
+  for (const scene::Decision& d : scene::decide(f)) {
+    json.begin_object();
+    json.member("what", d.what);
+    json.member("needed", d.needed);
+    json.member("reason", d.reason);
+    json.end();
+  }
+  json.end();
+}
+
+namespace {
+
+void add_phases(JsonWriter& json, const PhaseClock& clock) {
+  json.begin_object("phases");
+  for (const PhaseClock::Phase& p : clock.phases()) {
+    json.begin_object(p.name);
+    json.member("wall", p.wall);
+    json.member("cpu", p.cpu);
+    json.end();
+  }
+  json.end();
+}
+
+void add_counters(JsonWriter& json, const scene::Counters& counters) {
+  json.begin_object("counters");
+  for (std::size_t i = 0; i < counters.value.size(); ++i) {
+    json.member(scene::counter_name(static_cast<scene::Counter>(i)), counters.value[i]);
+  }
+  json.end();
+}
+
+/// The error of the picture if there is one, of the radiosity otherwise.
+void add_error(JsonWriter& json, const Statistics& s) {
+  json.begin_object("error");
+  json.null("target");  // none can be asked for yet
+  if (!s.views.empty()) {
+    json.member("estimate", s.views.back().error_estimate);
+  } else if (s.solve) {
+    json.member("estimate", s.solve->error_estimate);
+  } else {
+    json.null("estimate");
+  }
+  json.null("ci");
+  json.end();
+}
+
+void add_solve(JsonWriter& json, const Statistics& s) {
+  json.begin_object("radiosity");
+  json.member("done", s.solve.has_value());
+  if (!s.radiosity_skipped.empty()) json.member("skipped", s.radiosity_skipped);
+  if (s.solve) {
+    json.member("elements", static_cast<std::uint64_t>(s.solve->elements));
+    json.member("iterations", s.solve->iterations);
+    json.member("residual", s.solve->residual);
+    json.member("error_estimate", s.solve->error_estimate);
+    json.member("complete", s.solve->complete);
+    json.member("stopped_by", s.solve->stopped_by);
+    json.begin_object("flux");
+    json.member("emitted", s.solve->emitted);
+    json.member("absorbed", s.solve->absorbed);
+    json.member("escaped", s.solve->escaped);
+    json.member("standard_error", s.solve->flux_error);
+    json.end();
+  }
+  json.end();
+}
+
+void add_views(JsonWriter& json, const Statistics& s) {
+  json.begin_array("views");
+  for (const ViewSummary& v : s.views) {
+    json.begin_object();
+    json.member("camera", v.camera);
+    json.member("width", v.width);
+    json.member("height", v.height);
+    json.member("samples", v.samples);
+    json.member("error_estimate", v.error_estimate);
+    json.member("complete", v.complete);
+    json.begin_array("files");
+    for (const std::string& f : v.files) json.element(f);
+    json.end();
+    json.end();
+  }
+  json.end();
+}
+
+}  // namespace
+
+void write_statistics(Session& session, const LoadedScene& loaded, const Statistics& s) {
+  if (session.options().stats.empty()) return;
+  session.clock.leave();
+  JsonWriter json;
+  json.begin_object();
+  json.member("version", ATRIUM_VERSION);
+  json.member("command", session.options().command_line);
+  json.member("seed", s.seed);
+  json.member("interrupted", session.interrupted());
+  add_phases(json, session.clock);
+  json.member("wall", session.clock.elapsed());
+  add_counters(json, s.counters);
+  add_error(json, s);
+  add_solve(json, s);
+  if (!s.views.empty()) add_views(json, s);
+  json.begin_object("scene");
+  json.member("triangles", loaded.scene->triangle_count());
+  json.member("objects", static_cast<std::uint64_t>(loaded.scene->objects.size()));
+  json.member("spectrum", loaded.basis.describe());
+  json.member("warnings", static_cast<std::uint64_t>(loaded.scene->report.warnings.size()));
+  json.end();
+  add_features(json, loaded.features);
+  json.member("peak_memory_mb", peak_memory_mb());
+  json.end();
+  write_text(json.text(), session.options().stats);
+}
+
+}  // namespace atrium::app

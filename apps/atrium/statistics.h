@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/json.h"
+#include "scene/counters.h"
+#include "scene/features.h"
+#include "session.h"
+
+namespace atrium::app {
+
+/// What a radiosity pass did, in plain numbers.
+struct SolveSummary {
+  std::size_t elements = 0;
+  int iterations = 0;
+  double residual = 0.0;
+  double error_estimate = 0.0;
+  bool complete = true;
+  std::string stopped_by;
+  double emitted = 0.0, absorbed = 0.0, escaped = 0.0, flux_error = 0.0;
+  scene::Counters counters;
+};
+
+/// What one picture took.
+struct ViewSummary {
+  std::string camera;
+  int width = 0, height = 0;
+  int samples = 0;
+  double error_estimate = 0.0;
+  bool complete = true;
+  std::vector<std::string> files;
+};
+
+/// Content of a --stats file.
+struct Statistics {
+  scene::Counters counters;  ///< of everything
+  std::optional<SolveSummary> solve;
+  std::string radiosity_skipped;  ///< the reason, if it was
+  std::vector<ViewSummary> views;
+  std::uint64_t seed = 1;
+};
+
+/// Complete or absent. Does nothing without --stats. \throws Error, RuntimeFailure
+void write_statistics(Session& session, const LoadedScene& loaded, const Statistics& statistics);
+
+/// Members of an open object: features, and decisions with reasons.
+void add_features(JsonWriter& json, const scene::Features& features);
+
+/// Writes text to a file, complete or absent. \throws Error, RuntimeFailure
+void write_text(const std::string& text, const std::string& file);
+
+}  // namespace atrium::app
