@@ -32,6 +32,9 @@ void print_text(const trace::Comparison& r) {
   std::printf("%-12s %+8.3f %%", "bias", 100.0 * r.bias);
   if (r.bias_error > 0.0) std::printf("   standard error %.3f %%", 100.0 * r.bias_error);
   std::printf("\n%-12s %8.3f %%\n", "maximum", 100.0 * r.max_abs);
+  for (const trace::TermComparison& t : r.terms)
+    std::printf("%-12s %8.3f %% of the light, difference %+.3f %%\n", t.name.c_str(), 100.0 * t.share,
+                100.0 * t.difference);
   if (!r.noise_known) std::printf("the reference has no stderr.* layers: its noise is included\n");
   if (r.pixels_skipped > 0)
     std::printf("%zu pixels are not finite and were skipped\n", r.pixels_skipped);
@@ -54,6 +57,14 @@ void print_json(const trace::Comparison& r) {
   json.member("bias", r.bias);
   json.member("bias_standard_error", r.bias_error);
   json.member("max", r.max_abs);
+  json.begin_object("terms");
+  for (const trace::TermComparison& t : r.terms) {
+    json.begin_object(t.name.c_str());
+    json.member("share", t.share);
+    json.member("difference", t.difference);
+    json.end();
+  }
+  json.end();
   json.member("noise_known", r.noise_known);
   json.member("pixels", static_cast<std::uint64_t>(r.pixels));
   json.member("pixels_skipped", static_cast<std::uint64_t>(r.pixels_skipped));

@@ -230,6 +230,27 @@ void add_bias(const scene::Image& a, const scene::Image& b, const Planes& p, Com
   result.bias_error = relative(std::hypot(mean_error(a, p), mean_error(b, p)), mean);
 }
 
+double mean_luminance(const RgbPlanes& layer, const Planes& p) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < layer.size(); ++i) {
+    if (p.valid[i] == 0) continue;
+    sum += layer.luminance(i);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+void add_terms(const scene::Image& a, const scene::Image& b, const Planes& p, Comparison& result) {
+  const double whole = mean_luminance(RgbPlanes(b, ""), p);
+  for (const char* name : {"C1", "C2", "C3", "C4", "C5", "C6", "emission"}) {
+    const std::string layer = std::string(name) + ".";
+    if (!RgbPlanes::present(a, layer) || !RgbPlanes::present(b, layer)) continue;
+    const double reference = mean_luminance(RgbPlanes(b, layer), p);
+    const double image = mean_luminance(RgbPlanes(a, layer), p);
+    result.terms.push_back({name, relative(reference, whole), relative(image - reference, whole)});
+  }
+}
+
 }  // namespace
 
 Comparison compare(const scene::Image& image, const scene::Image& reference) {
@@ -237,6 +258,7 @@ Comparison compare(const scene::Image& image, const scene::Image& reference) {
   Comparison result;
   result.noise_known = RgbPlanes::present(reference, "stderr.");
   add_bias(image, reference, planes, result);
+  add_terms(image, reference, planes, result);
   result.pixel = measure(planes, kTile, result.pixel_noise, &result.max_abs);
   result.block = measure(block_average(planes), kTile / kBlock, result.block_noise, nullptr);
   return result;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "scene/image.h"
 
@@ -11,6 +13,13 @@ struct Measure {
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;
+};
+
+/// One term C1..C6 (or emission) of both images, as shares of the reference's whole mean luminance.
+struct TermComparison {
+  std::string name;
+  double share = 0.0;       ///< of the term in the reference
+  double difference = 0.0;  ///< image minus reference
 };
 
 /// How far an image I is from a reference R.
@@ -29,6 +38,7 @@ struct Comparison {
   bool noise_known = false;
   double pixel_noise = 0.0;  ///< RMS of the reference's standard error, same units
   double block_noise = 0.0;
+  std::vector<TermComparison> terms;  ///< of layers that both images have
   std::size_t pixels = 0;          ///< compared
   std::size_t pixels_skipped = 0;  ///< not finite in one of the images
 };
