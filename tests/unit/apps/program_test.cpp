@@ -78,7 +78,7 @@ TEST(AtriumProgram, StartsWithoutImageAndMeshLibraries) {
 
 TEST(AtriumProgram, WrongUsageIsOneLineAndCode2) {
   const TempFolder folder;
-  expect_error(run(folder, ""), 2, "subcommand");
+  expect_error(run(folder, ""), 2, "subcommand is required");
   expect_error(run(folder, "paint"), 2, "paint");
   expect_error(run(folder, "render"), 2, "required");
   expect_error(run(folder, "render a.obj"), 2, "--output");
@@ -125,7 +125,7 @@ TEST(AtriumProgram, BadInputAndBadOutputNameTheFile) {
   expect_error(run(folder, "render missing.glb -o a.exr"), 2, "missing.glb");
   expect_error(run(folder, "render a.xyz -o a.exr"), 2, "a.xyz");
   expect_error(run(folder, "render broken.glb -o a.exr"), 2, "broken.glb");
-  expect_error(run(folder, "render empty.obj -o a.exr"), 2, "geometry");
+  expect_error(run(folder, "render empty.obj -o a.exr"), 2, "empty.obj");
   expect_error(run(folder, "render a.obj -o a.gif"), 2, "a.gif");
   expect_error(run(folder, "render a.obj -o none/a.exr"), 2, "none/a.exr");
   expect_error(run(folder, "render a.obj -o a.exr --stats none/s.json"), 2, "none/s.json");
@@ -222,8 +222,12 @@ TEST_F(AtriumRun, SolutionsAreReusedAndCheckedAgainstTheScene) {
   const Result used = run(folder, "render a.obj -o a.pfm --solution a.atrium" + small);
   EXPECT_EQ(used.code, 0) << used.err;
   // The same picture as solving and rendering in one go with the same seed.
-  EXPECT_EQ(run(folder, "render a.obj -o b.pfm --save-solution b.atrium" + small).code, 0);
+  EXPECT_EQ(
+      run(folder, "render a.obj -o b.pfm --save-solution b.atrium --stats s.json" + small).code, 0);
   EXPECT_EQ(read_file(folder / "a.pfm"), read_file(folder / "b.pfm"));
+  for (const char* phase : {"\"mesh\"", "\"direct\"", "\"radiosity\""}) {
+    EXPECT_NE(read_file(folder / "s.json").find(phase), std::string::npos) << phase;
+  }
   // Another floor, a cut file.
   folder.write("b.obj", std::string(kLitFloor) + "v 3 0 0\nf 1 2 9\n");
   expect_error(run(folder, "render b.obj -o c.pfm --solution a.atrium" + small), 2, "a.atrium");
