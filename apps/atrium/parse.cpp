@@ -20,6 +20,7 @@ struct Texts {
   std::string camera, size, crop, exposure = "auto", tone = "filmic", method = "hybrid",
                                   quality = "normal", indirect = "auto", solver = "rows",
                                   mode = "radiometric", emissive_unit = "nit";
+  bool no_pane_detection = false;
 };
 
 std::string shell_word(const std::string& word) {
@@ -111,7 +112,7 @@ void add_scene(CLI::App& app, SceneOptions& o, Texts& t) {
                  "what emissive numbers of models are: nit, or radiance in W/(sr m^2)")
       ->check(CLI::IsMember({"nit", "radiance"}))
       ->capture_default_str();
-  app.add_flag("!--no-pane-detection", o.pane_detection,
+  app.add_flag("--no-pane-detection", t.no_pane_detection,
                "keep closed solids with two parallel faces as solids");
   app.add_option("--spectrum", o.spectrum, "spectral lanes: auto, grey, rgb, 4 or 8")
       ->check(CLI::IsMember({"auto", "grey", "rgb", "4", "8"}))
@@ -237,6 +238,7 @@ void finish(SolveSettings& o, const Texts& t) {
 
 void finish(SceneOptions& o, const Texts& t) {
   // 179 lm/W: the luminous efficacy of white light where watts have to become lumens (DESIGN 8).
+  o.pane_detection = !t.no_pane_detection;
   o.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
 }
 
@@ -299,6 +301,18 @@ struct Parser {
   }
 };
 
+/// What was given as values, the defaults in effect as comments: read back, an option that was not
+/// given still counts as not given when contradictions are looked for.
+void print_configuration(const CLI::App& sub) {
+  std::cout << '[' << sub.get_name() << "]\n" << sub.config_to_str(false, false);
+  for (const CLI::Option* option : sub.get_options()) {
+    if (option->count() > 0 || !option->get_configurable()) continue;
+    const bool flag = option->get_expected_max() == 0;
+    std::cout << "# " << option->get_single_name() << "="
+              << (flag ? "false" : option->get_default_str()) << '\n';
+  }
+}
+
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 Command finished_command(Parser& p, const std::string& command_line) {
@@ -339,6 +353,9 @@ Effort effort_of(Quality quality) {
 
 Command parse_command_line(int argc, char** argv) {
   Parser p;
+  if (argc > 1 && argv[1][0] != '-' && p.app.get_subcommand_no_throw(argv[1]) == nullptr) {
+    throw Error(std::string(argv[1]) + ": unknown command (known: render solve info compare)");
+  }
   try {
     p.app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -354,7 +371,7 @@ Command parse_command_line(int argc, char** argv) {
   const Command command = finished_command(p, join(argc, argv));
   if (!p.print_config) return command;
   const CLI::App& sub = *p.app.get_subcommands().front();
-  std::cout << '[' << sub.get_name() << "]\n" << sub.config_to_str(true, false);
+  print_configuration(sub);
   return Finished{0};
 }
 

@@ -14,13 +14,24 @@ Session::Session(const CommonOptions& options, std::stop_token stop)
       stop_(std::move(stop)),
       threads_(options.threads) {}
 
+namespace {
+
+/// The radiosity pass names its stages in remarks; two of them are timed as phases of their own.
+std::string_view timed_phase(const std::string& phase, std::string_view remark) {
+  if (phase == "radiosity" && remark == "elements") return "mesh";
+  if (phase == "radiosity" && remark == "direct light") return "direct";
+  return phase;
+}
+
+}  // namespace
+
 scene::Control Session::control(const std::string& phase) {
   clock.enter(phase);
   scene::Control control;
   control.stop = stop_;
   control.progress = [this, phase](std::string_view part, double fraction,
                                    std::string_view remark) {
-    clock.enter(part == "mesh" || part == "direct" ? part : std::string_view(phase));
+    clock.enter(timed_phase(phase, remark));
     progress.report(part, fraction, remark);
   };
   return control;
@@ -87,7 +98,6 @@ LoadedScene load_scene(Session& session, const SceneOptions& options,
   scene::BuildOptions build;
   build.pane_detection = options.pane_detection;
   if (settings.follow_view && loaded.views.size() == 1) build.view = model.cameras[loaded.views[0]];
-  session.progress.report("load", 0.5, {});
   loaded.scene = std::make_unique<scene::Scene>(scene::build_scene(std::move(model), build));
   if (settings.show_warnings) show_warnings(session.progress, loaded.scene->report.warnings);
 

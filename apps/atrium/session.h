@@ -25,8 +25,7 @@ class Session {
 
   [[nodiscard]] const CommonOptions& options() const { return options_; }
   [[nodiscard]] bool interrupted() const { return stop_.stop_requested(); }
-  /// For a library call; `phase` is what its time counts as, except for the parts that it reports
-  /// under the name of another known phase.
+  /// For a library call; `phase` is what its time counts as (radiosity: also "mesh", "direct").
   [[nodiscard]] scene::Control control(const std::string& phase);
   /// Only with --verbose.
   void detail(const std::string& line);

@@ -59,7 +59,7 @@ void Progress::report(std::string_view phase, double fraction, std::string_view 
 
 void Progress::print_line(double fraction, std::string_view remark) {
   const int tenth = static_cast<int>(fraction * 10.0);
-  if (tenth == last_tenth_) return;
+  if (tenth == last_tenth_ || tenth == 0) return;  // a start alone is no news
   last_tenth_ = tenth;
   std::string line = phase_ + ": " + std::to_string(static_cast<int>(fraction * 100.0)) + " %";
   if (!remark.empty()) line += ", " + std::string(remark);

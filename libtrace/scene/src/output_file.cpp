@@ -21,7 +21,7 @@ struct Target {
 Target check(const fs::path& name) {
   if (name.empty()) throw Error("output file: the name is empty");
   std::error_code ec;
-  const fs::path file = fs::weakly_canonical(name, ec);
+  const fs::path file = fs::weakly_canonical(fs::absolute(name), ec);
   if (ec) throw Error(name.string() + ": cannot be written: " + ec.message());
   const fs::file_status status = fs::status(file, ec);
   if (fs::is_directory(status)) throw Error(name.string() + ": cannot be written: is a folder");

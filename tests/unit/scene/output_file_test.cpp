@@ -59,6 +59,11 @@ TEST(OutputFile, MissingFolderAndFolderAsTargetAreErrorsThatNameThem) {
   EXPECT_NE(message({}).find("empty"), std::string::npos);
 }
 
+TEST(OutputFile, AFileNameAloneIsInTheCurrentFolder) {
+  const OutputFile out("name-alone.txt");
+  EXPECT_EQ(out.path().parent_path(), std::filesystem::current_path());
+}
+
 TEST(OutputFile, LinksAreWrittenThroughAndDevicesDirectly) {
   const TempFolder folder;
   folder.write("real.txt", "old");

@@ -1,0 +1,39 @@
+#!/bin/sh
+# Installs the Debian 12 packages that Atrium needs; does nothing if all are there.
+#   scripts/install_deps.sh build        to build and run the programs
+#   scripts/install_deps.sh build test   and to run the tests
+set -eu
+
+build="g++ cmake ninja-build ccache pkg-config
+  libembree-dev libtbb-dev libeigen3-dev libopenmesh-dev libosd-dev libopenimageio-dev libvtk9-dev
+  libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libassimp-dev libtinygltf-dev libtinyobjloader-dev"
+test="libgtest-dev xvfb xauth"
+
+wanted=""
+for list in "$@"; do
+  case "$list" in
+    build) wanted="$wanted $build" ;;
+    test) wanted="$wanted $test" ;;
+    *) echo "install_deps.sh: unknown list '$list' (known: build test)" >&2; exit 2 ;;
+  esac
+done
+
+missing=""
+for package in $wanted; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+if [ "$(id -u)" -eq 0 ]; then
+  sudo=""
+elif command -v sudo >/dev/null; then
+  sudo="sudo"
+else
+  echo "install_deps.sh: run as root or install sudo; missing:$missing" >&2
+  exit 1
+fi
+echo "installing:$missing"
+$sudo apt-get update -q
+# shellcheck disable=SC2086  # a list of words
+$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing

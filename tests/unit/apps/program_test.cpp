@@ -1,0 +1,305 @@
+// Runs the built program as a user does: exit codes, one line per error, no partial files.
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "support/temp_folder.h"
+
+namespace {
+
+using atrium::test::TempFolder;
+
+struct Result {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Runs `prefix atrium arguments` in the shell, in the folder.
+Result run_command(const TempFolder& folder, const std::string& command) {
+  const std::string line = "cd '" + folder.path().string() + "' && { " + command +
+                           "; } >stdout.txt 2>stderr.txt </dev/null";
+  const int status = std::system(line.c_str());
+  Result r;
+  r.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  r.out = read_file(folder / "stdout.txt");
+  r.err = read_file(folder / "stderr.txt");
+  std::filesystem::remove(folder / "stdout.txt");
+  std::filesystem::remove(folder / "stderr.txt");
+  return r;
+}
+Result run(const TempFolder& folder, const std::string& arguments) {
+  return run_command(folder, std::string(ATRIUM_PROGRAM) + " " + arguments);
+}
+
+/// Exactly one line, "atrium: error: ..." with the fragment in it.
+void expect_error(const Result& r, int code, const std::string& fragment) {
+  EXPECT_EQ(r.code, code) << r.err;
+  EXPECT_EQ(r.err.find("atrium: error: "), 0u) << r.err;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  EXPECT_NE(r.err.find(fragment), std::string::npos) << r.err;
+}
+
+/// A floor of 2 m x 2 m.
+constexpr const char* kFloor = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n";
+
+TEST(AtriumProgram, HelpAndVersion) {
+  const TempFolder folder;
+  const Result help = run(folder, "--help");
+  EXPECT_EQ(help.code, 0);
+  for (const char* word : {"render", "solve", "info", "compare"}) {
+    EXPECT_NE(help.out.find(word), std::string::npos);
+  }
+  EXPECT_EQ(run(folder, "render --help").code, 0);
+  const Result version = run(folder, "--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.find("atrium "), 0u);
+}
+
+// Loading the image or the mesh library would cost 300 ms or more at every start.
+TEST(AtriumProgram, StartsWithoutImageAndMeshLibraries) {
+  const TempFolder folder;
+  const Result r = run_command(folder, std::string("ldd ") + ATRIUM_PROGRAM);
+  ASSERT_EQ(r.code, 0);
+  EXPECT_NE(r.out.find("libembree"), std::string::npos);
+  EXPECT_EQ(r.out.find("OpenImageIO"), std::string::npos);
+  EXPECT_EQ(r.out.find("libvtk"), std::string::npos);
+}
+
+TEST(AtriumProgram, WrongUsageIsOneLineAndCode2) {
+  const TempFolder folder;
+  expect_error(run(folder, ""), 2, "subcommand is required");
+  expect_error(run(folder, "paint"), 2, "paint");
+  expect_error(run(folder, "render"), 2, "required");
+  expect_error(run(folder, "render a.obj"), 2, "--output");
+  expect_error(run(folder, "render a.obj -o a.exr --samples many"), 2, "--samples");
+  expect_error(run(folder, "render a.obj -o a.exr --samples -3"), 2, "--samples");
+  expect_error(run(folder, "render a.obj -o a.exr --method magic"), 2, "--method");
+  expect_error(run(folder, "render a.obj -o a.exr --size 640"), 2, "--size 640");
+  expect_error(run(folder, "render a.obj -o a.exr --size 0x480"), 2, "--size 0x480");
+  expect_error(run(folder, "render a.obj -o a.exr --size 64x48x3"), 2, "--size");
+  expect_error(run(folder, "render a.obj -o a.exr --crop 0.5,0,0.5,1"), 2, "--crop");
+  expect_error(run(folder, "render a.obj -o a.exr --crop 0,0,nan,1"), 2, "--crop");
+  expect_error(run(folder, "render a.obj -o a.png --exposure bright"), 2, "--exposure bright");
+  expect_error(run(folder, "render a.obj -o a.png --time-limit -1"), 2, "--time-limit");
+  expect_error(run(folder, "render a.obj -o a.png --unknown"), 2, "--unknown");
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+TEST(AtriumProgram, ContradictionsAreErrorsThatNameTheOption) {
+  const TempFolder folder;
+  folder.write("a.obj", kFloor);
+  const std::string path = "render a.obj -o a.exr --method path ";
+  expect_error(run(folder, path + "--solution x.atrium"), 2, "--solution");
+  expect_error(run(folder, path + "--save-solution x.atrium"), 2, "--save-solution");
+  expect_error(run(folder, path + "--indirect mesh"), 2, "--indirect");
+  expect_error(run(folder, path + "--solver rows"), 2, "--solver");
+  expect_error(run(folder, path + "--mode paper"), 2, "paper");
+  expect_error(run(folder, "render a.obj -o a.exr --method direct --indirect mesh"), 2,
+               "--indirect");
+  expect_error(run(folder, "render a.obj -o a.exr --exposure 3"), 2, "--exposure");
+  expect_error(run(folder, "render a.obj -o a.png --components"), 2, "--components");
+  expect_error(run(folder, "render a.obj -o a.exr --solution x.atrium --solver rows"), 2,
+               "--solver");
+  expect_error(run(folder, "render a.obj -o a.exr -o ./a.exr"), 2, "twice");
+  expect_error(run(folder, "render a.obj -o a.exr --quiet --verbose"), 2, "--verbose");
+  EXPECT_EQ(folder.file_count(), 1);
+}
+
+TEST(AtriumProgram, BadInputAndBadOutputNameTheFile) {
+  const TempFolder folder;
+  folder.write("a.obj", kFloor);
+  folder.write("empty.obj", "# nothing\n");
+  folder.write("broken.glb", "glTF, not really");
+  folder.write("a.xyz", "1 2 3");
+  expect_error(run(folder, "render missing.glb -o a.exr"), 2, "missing.glb");
+  expect_error(run(folder, "render a.xyz -o a.exr"), 2, "a.xyz");
+  expect_error(run(folder, "render broken.glb -o a.exr"), 2, "broken.glb");
+  expect_error(run(folder, "render empty.obj -o a.exr"), 2, "empty.obj");
+  expect_error(run(folder, "render a.obj -o a.gif"), 2, "a.gif");
+  expect_error(run(folder, "render a.obj -o none/a.exr"), 2, "none/a.exr");
+  expect_error(run(folder, "render a.obj -o a.exr --stats none/s.json"), 2, "none/s.json");
+  expect_error(run(folder, "render a.obj -o a.exr --camera main"), 2, "--camera main");
+  expect_error(run(folder, "render a.obj -o a.exr --save-solution s.bin"), 2, "s.bin");
+  expect_error(run(folder, "solve a.obj -o a.stl"), 2, "a.stl");
+  expect_error(run(folder, "info missing.exr"), 2, "missing.exr");
+  expect_error(run(folder, "compare missing.pfm a.pfm"), 2, "missing.pfm");
+  EXPECT_EQ(folder.file_count(), 4);
+}
+
+TEST(AtriumProgram, PrintedConfigurationCanBeReadBack) {
+  const TempFolder folder;
+  const Result first = run(folder,
+                           "render 'a b.obj' c.glb -o a.exr -o b.png --size 64x48 --samples 7 "
+                           "--exposure 3.5 --components --no-pane-detection --print-config");
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_NE(first.out.find("samples=7"), std::string::npos) << first.out;
+  folder.write("run.toml", first.out);
+  const Result second = run(folder, "render --config run.toml --print-config");
+  EXPECT_EQ(second.code, 0) << second.err;
+  EXPECT_EQ(first.out, second.out);
+  // The command line wins over the file.
+  const Result third = run(folder, "render --config run.toml --samples 9 --print-config");
+  EXPECT_NE(third.out.find("samples=9"), std::string::npos) << third.out;
+  expect_error(run(folder, "render --config none.toml"), 2, "none.toml");
+}
+
+TEST(AtriumProgram, CompareMeasuresAndDifference) {
+  const TempFolder folder;
+  // 1x1 grey images 2.21 and 2.0: e = 0.21 / (2 + 0.1) = 10 %.
+  const auto pfm = [](float value) {
+    std::string text = "PF\n1 1\n-1.0\n";
+    for (int c = 0; c < 3; ++c) text.append(reinterpret_cast<const char*>(&value), sizeof value);
+    return text;
+  };
+  folder.write("a.pfm", pfm(2.21f));
+  folder.write("b.pfm", pfm(2.0f));
+  folder.write("c.pfm", "PF\n2 1\n-1.0\n" + std::string(24, '\0'));
+  const Result r = run(folder, "compare a.pfm b.pfm -o d.pfm");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.out.find("10.000 %"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("+10.500 %"), std::string::npos) << r.out;
+  EXPECT_TRUE(std::filesystem::exists(folder / "d.pfm"));
+  expect_error(run(folder, "compare a.pfm c.pfm"), 2, "2x1");
+}
+
+// A lamp above a grey floor needs no image library at all with .pfm output.
+constexpr const char* kLitFloor =
+    "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
+    "v -.2 1.5 .2\nv .2 1.5 .2\nv .2 1.5 -.2\nv -.2 1.5 -.2\n"
+    "mtllib a.mtl\nusemtl grey\nf 1 2 3 4\nusemtl lamp\nf 8 7 6 5\n";
+constexpr const char* kLitFloorMaterials =
+    "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 100 100 100\n";
+
+class AtriumRun : public ::testing::Test {
+ protected:
+  AtriumRun() {
+    folder.write("a.obj", kLitFloor);
+    folder.write("a.mtl", kLitFloorMaterials);
+  }
+  TempFolder folder;
+};
+
+TEST_F(AtriumRun, RenderWritesImageAndStatistics) {
+  const Result r = run(folder,
+                       "render a.obj -o a.pfm --method direct --size 32x24 --samples 2 --stats "
+                       "s.json");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.err.find("no camera"), std::string::npos) << r.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.pfm"));
+  const std::string stats = read_file(folder / "s.json");
+  for (const char* word :
+       {"\"phases\"", "\"load\"", "\"render\"", "\"write\"", "\"wall\"", "\"cpu\"",
+        "\"rays.primary\"", "\"peak_memory_mb\"", "\"features\"", "\"error\""}) {
+    EXPECT_NE(stats.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(folder.file_count(), 4);
+}
+
+TEST_F(AtriumRun, QuietIsSilentAndThreadsDoNotChangeTheImage) {
+  const std::string rest = " --method path --size 24x18 --samples 2 --quiet ";
+  const Result one = run(folder, "render a.obj -o 1.pfm --threads 1" + rest);
+  EXPECT_EQ(one.code, 0);
+  EXPECT_EQ(one.err, "");
+  EXPECT_EQ(run(folder, "render a.obj -o 2.pfm --threads 2" + rest).code, 0);
+  EXPECT_EQ(read_file(folder / "1.pfm"), read_file(folder / "2.pfm"));
+}
+
+TEST_F(AtriumRun, SolutionsAreReusedAndCheckedAgainstTheScene) {
+  const std::string small = " --size 24x18 --samples 2 --quality draft --quiet ";
+  const Result solve = run(folder, "solve a.obj -o a.atrium --quality draft --quiet");
+  ASSERT_EQ(solve.code, 0) << solve.err;
+  const Result used = run(folder, "render a.obj -o a.pfm --solution a.atrium" + small);
+  EXPECT_EQ(used.code, 0) << used.err;
+  // The same picture as solving and rendering in one go with the same seed.
+  EXPECT_EQ(
+      run(folder, "render a.obj -o b.pfm --save-solution b.atrium --stats s.json" + small).code, 0);
+  EXPECT_EQ(read_file(folder / "a.pfm"), read_file(folder / "b.pfm"));
+  for (const char* phase : {"\"mesh\"", "\"direct\"", "\"radiosity\""}) {
+    EXPECT_NE(read_file(folder / "s.json").find(phase), std::string::npos) << phase;
+  }
+  // Another floor, a cut file.
+  folder.write("b.obj", std::string(kLitFloor) + "v 3 0 0\nf 1 2 9\n");
+  expect_error(run(folder, "render b.obj -o c.pfm --solution a.atrium" + small), 2, "a.atrium");
+  folder.write("cut.atrium", read_file(folder / "a.atrium").substr(0, 1000));
+  expect_error(run(folder, "render a.obj -o c.pfm --solution cut.atrium" + small), 2, "cut.atrium");
+  EXPECT_FALSE(std::filesystem::exists(folder / "c.pfm"));
+}
+
+TEST_F(AtriumRun, InfoListsDecisions) {
+  const Result r = run(folder, "info a.obj");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.out.find("triangles: 4"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("needed:"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("skipped:"), std::string::npos) << r.out;
+  const Result json = run(folder, "info a.obj --json");
+  EXPECT_EQ(json.out.find("{"), 0u);
+  EXPECT_NE(json.out.find("\"decisions\""), std::string::npos);
+}
+
+// What was computed until then is there, complete, and the exit code says that it is not all.
+TEST_F(AtriumRun, AnInterruptSavesWhatIsThere) {
+  const auto start = std::chrono::steady_clock::now();
+  const Result r = run_command(
+      folder, std::string("timeout --preserve-status --kill-after=60 -s INT 2 ") + ATRIUM_PROGRAM +
+                  " render a.obj -o a.pfm --method path --size 200x150 --samples 100000 --quiet");
+  EXPECT_EQ(r.code, 130) << r.err;
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.pfm"), 200u * 150 * 12 + 16);
+  EXPECT_EQ(folder.file_count(), 3);
+}
+
+// The program alone in a folder finds no module: one line that names it, code 1.
+TEST_F(AtriumRun, AMissingModuleIsAClearFailure) {
+  std::filesystem::create_directories(folder / "bin");
+  std::filesystem::copy_file(ATRIUM_PROGRAM, folder / "bin/atrium");
+  const Result r = run_command(folder,
+                               "bin/atrium render a.obj -o a.png --method direct --size 8x6 "
+                               "--samples 1 --quiet");
+  if (r.code == 0) GTEST_SKIP() << "modules are installed in the configured prefix";
+  expect_error(r, 1, "atrium_image_io.so");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+#ifdef ATRIUM_VIEW_PROGRAM
+Result view(const TempFolder& folder, const std::string& arguments) {
+  return run_command(folder,
+                     "unset DISPLAY; " + std::string(ATRIUM_VIEW_PROGRAM) + " " + arguments);
+}
+
+TEST_F(AtriumRun, ViewerRefusesWithoutADisplayAndNamesBadInput) {
+  ASSERT_EQ(run(folder, "solve a.obj -o a.vtp --quality draft --quiet").code, 0);
+  const Result r = view(folder, "a.vtp --screenshot a.png");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_NE(r.err.find("DISPLAY"), std::string::npos) << r.err;
+  EXPECT_EQ(view(folder, "missing.vtp").code, 2);
+  EXPECT_EQ(view(folder, "a.obj").code, 2);
+  EXPECT_EQ(view(folder, "").code, 2);
+  const Result field = view(folder, "a.vtp --field nonsense");
+  EXPECT_EQ(field.code, 2);
+  EXPECT_NE(field.err.find("irradiance"), std::string::npos) << field.err;
+}
+
+TEST_F(AtriumRun, ViewerTakesAScreenshot) {
+  if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "xvfb-run is missing";
+  ASSERT_EQ(run(folder, "solve a.obj -o a.vtu --quality draft --quiet").code, 0);
+  const Result r = run_command(folder, std::string("xvfb-run -a ") + ATRIUM_VIEW_PROGRAM +
+                                           " a.vtu --field irradiance --screenshot a.png --size "
+                                           "320x240");
+  EXPECT_EQ(r.code, 0) << r.err;
+  // 320x240 plain background compresses to about 1 kB: there is a picture in it.
+  EXPECT_GT(std::filesystem::file_size(folder / "a.png"), 3000u);
+}
+#endif
+
+}  // namespace
