@@ -33,8 +33,8 @@ void print_text(const trace::Comparison& r) {
   if (r.bias_error > 0.0) std::printf("   standard error %.3f %%", 100.0 * r.bias_error);
   std::printf("\n%-12s %8.3f %%\n", "maximum", 100.0 * r.max_abs);
   for (const trace::TermComparison& t : r.terms)
-    std::printf("%-12s %8.3f %% of the light, difference %+.3f %%\n", t.name.c_str(), 100.0 * t.share,
-                100.0 * t.difference);
+    std::printf("%-12s %8.3f %% of the light, difference %+.3f %%\n", t.name.c_str(),
+                100.0 * t.share, 100.0 * t.difference);
   if (!r.noise_known) std::printf("the reference has no stderr.* layers: its noise is included\n");
   if (r.pixels_skipped > 0)
     std::printf("%zu pixels are not finite and were skipped\n", r.pixels_skipped);

@@ -196,6 +196,9 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   if (o.method == trace::Method::Path && o.mode == trace::Mode::Paper) {
     throw Error("--mode paper: --method path needs energy-conserving materials (radiometric)");
   }
+  if (o.mode == trace::Mode::Paper) {
+    refuse("--indirect", "paper mode reads its ambient light from the mesh");
+  }
   if (!any_output(o, scene::is_display_ending)) {
     for (const char* name : {"--exposure", "--tone"}) {
       refuse(name, "only 8-bit images are tone mapped: there is no .png or .jpg output");
@@ -221,6 +224,7 @@ RenderCommand finish(RenderCommand o, const Texts& t, const CLI::App& app) {
   o.method = choose<Method>(
       t.method, {{"hybrid", Method::Hybrid}, {"path", Method::Path}, {"direct", Method::Direct}});
   o.mode = choose<Mode>(t.mode, {{"radiometric", Mode::Radiometric}, {"paper", Mode::Paper}});
+  o.solve.paper_weights = o.mode == Mode::Paper;
   o.indirect = choose<IndirectChoice>(t.indirect, {{"auto", IndirectChoice::Auto},
                                                    {"mesh", IndirectChoice::Mesh},
                                                    {"gather", IndirectChoice::Gather}});
@@ -353,7 +357,8 @@ Effort effort_of(Quality quality) {
 
 Command parse_command_line(int argc, char** argv) {
   Parser p;
-  if (argc > 1 && argv[1][0] != '-' && p.app.get_subcommand_no_throw(argv[1]) == nullptr) {
+  const auto is_command = [&](const CLI::App* sub) { return sub->check_name(argv[1]); };
+  if (argc > 1 && argv[1][0] != '-' && p.app.get_subcommands(is_command).empty()) {
     throw Error(std::string(argv[1]) + ": unknown command (known: render solve info compare)");
   }
   try {

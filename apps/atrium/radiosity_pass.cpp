@@ -25,7 +25,7 @@ std::string describe(const SolveSettings& s) {
                         : s.quality == Quality::Normal ? "normal"
                                                        : "high";
   return std::string("solver ") + solver + ", quality " + quality + ", seed " +
-         std::to_string(s.seed);
+         std::to_string(s.seed) + (s.paper_weights ? ", paper weights" : "");
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY
@@ -44,6 +44,7 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.direct_samples = effort.direct_samples;
   o.caustic_photons = effort.caustic_photons;
   o.seed = settings.seed;
+  o.paper_weights = settings.paper_weights;
   o.time_limit = time_limit;
   return o;
 }

@@ -34,7 +34,8 @@ void check_outputs(const RenderCommand& c) {
       throw Error(file + ": unknown image format (known: .exr .hdr .pfm .png .jpg)");
     }
     scene::check_output(file);
-    if (!seen.insert(fs::weakly_canonical(fs::absolute(file))).second) throw Error(file + ": is given twice");
+    if (!seen.insert(fs::weakly_canonical(fs::absolute(file))).second)
+      throw Error(file + ": is given twice");
   }
   if (!c.save_solution.empty()) {
     if (scene::file_ending(c.save_solution) != ".atrium") {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "material/error.h"
 #include "material/fresnel.h"
 #include "material/pane.h"
 
@@ -242,6 +243,31 @@ std::optional<Vec3f> PaperSurface<N>::transmitted(const Vec3f& b) const {
   if (!(sin2 <= 1.0f)) return std::nullopt;
   const float cos_beta = std::sqrt(1.0f - sin2);
   return Vec3f(-b.x() / n21_mean_, -b.y() / n21_mean_, -cos_beta).normalized();
+}
+
+Material paper_transport(const Material& m) {
+  Material t = m;
+  t.c = std::numeric_limits<double>::infinity();
+  t.sigma.reset();
+  t.roughness_texture = {};
+  if (m.medium == Material::Medium::Pane) return t;
+  if (m.combination == Material::Combination::Coupled) {
+    const ResolvedMaterial<3> r = resolve_material<3>(m, SpectralBasis::rgb());
+    t.combination = Material::Combination::Convex;
+    t.k_df = 1.0 - m.k_rg * static_cast<double>(r.reflectance_zero.mean());
+  }
+  // The largest share of light that any direction sends back or through: F moves light between
+  // the two specular weights, so their larger one counts.
+  const double body = t.k_df * (m.body_reflectance ? max_value(*m.body_reflectance) : 0.0) +
+                      t.k_tp_df * (m.body_transmittance ? max_value(*m.body_transmittance) : 0.0);
+  const double interface = std::max(t.k_rg, t.k_tp_rg);
+  if (body > 0.0 && body + interface >= 1.0 && t.combination == Material::Combination::Convex &&
+      m.combination == Material::Combination::Convex)
+    throw Error("material '" + m.name +
+                "': in paper mode it returns all light (k_df rho_d + k_tp_df tau_d = " +
+                std::to_string(body) + ", specular weight " + std::to_string(interface) +
+                "); the sum must be below 1");
+  return t;
 }
 
 template class PaperSurface<1>;

@@ -62,7 +62,7 @@ Solution<N> run_solver(const Problem<N>& problem, Work& work, scene::Counters& c
 template <int N>
 void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& basis,
                  const SolveOptions& options, Work& work, SolveResult& result) {
-  const scene::Shading<N> shading(query, basis);
+  const scene::Shading<N> shading(query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
   const Problem<N> problem(shading, result.elements, options);
   Solution<N> solution = run_solver(problem, work, result.counters);
   complete_body(solution.direct, problem);

@@ -96,6 +96,12 @@ class PaperSurface {
   bool pane_ = false;
 };
 
+/// The material whose radiometric transport has the weights of the paper's equation: body k_df
+/// rho_d and k_tp_df tau_d, mirror k_rg F and refraction k_tp_rg (1 - F) at any roughness. What the
+/// diffuse inter-reflection of paper mode is solved with; the highlight's c is gone.
+/// \throws Error  if body and specular weights together reach 1: nothing would ever be absorbed.
+[[nodiscard]] Material paper_transport(const Material& material);
+
 extern template class PaperSurface<1>;
 extern template class PaperSurface<3>;
 extern template class PaperSurface<4>;

@@ -31,6 +31,7 @@ struct SolveOptions {
   double tolerance = 1e-4;             ///< of the iteration, relative to the largest radiosity
   double time_limit = 0.0;             ///< [s]; 0: none
   std::uint64_t seed = 1;
+  bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
 };
 
 /// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + unshot within their errors.

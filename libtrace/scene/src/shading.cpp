@@ -3,10 +3,17 @@
 namespace atrium::scene {
 
 template <int N>
-Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis)
+Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis, Weights weights)
     : query_(&query), basis_(basis), lights_(query.scene(), basis) {
-  materials_.reserve(scene().materials.size());
-  for (const material::Material& m : scene().materials)
+  if (weights == Weights::Paper) {
+    sources_.reserve(scene().materials.size());
+    for (const material::Material& m : scene().materials)
+      sources_.push_back(material::paper_transport(m));
+  }
+  const std::vector<material::Material>& sources =
+      weights == Weights::Paper ? sources_ : scene().materials;
+  materials_.reserve(sources.size());
+  for (const material::Material& m : sources)
     materials_.push_back(material::resolve_material<N>(m, basis));
 }
 
@@ -73,26 +80,35 @@ Interaction<N> Shading<N>::interact(const SurfacePoint& point, const Vec3f& wo) 
   // Interpolated or mapped normals may turn away from the viewer: such points shade as flat.
   if (!(ns.dot(wo) > 1e-3f)) ns = ng;
 
-  Spectrum<N> body = Spectrum<N>::one();
-  Spectrum<N> reflectance = Spectrum<N>::one();
-  float roughness = 1.0f;
-  const auto& textures = scene().textures;
-  if (m.body_texture.texture.valid())
-    body = basis_.template from_rgb<N>(
-        textures[m.body_texture.texture.value].rgb(m.body_texture.transform(point.uv)));
-  if (!point.color.isOnes(0.0f)) {
-    const Spectrum<N> tint =
-        basis_.template from_rgb<N>(make_rgb(point.color.x(), point.color.y(), point.color.z()));
-    body *= tint;
-  }
-  if (m.reflectance_texture.texture.valid())
-    reflectance = basis_.template from_rgb<N>(textures[m.reflectance_texture.texture.value].rgb(
-        m.reflectance_texture.transform(point.uv)));
-  if (m.roughness_texture.texture.valid())
-    roughness = textures[m.roughness_texture.texture.value].channel(
-        m.roughness_texture.transform(point.uv), m.roughness_texture.channel);
+  const Factors f = factors(point);
   return Interaction<N>{point, front ? Side::Front : Side::Back, ng, Frame(ns),
-                        material::Bsdf<N>(resolved, front, body, reflectance, roughness)};
+                        material::Bsdf<N>(resolved, front, f.body, f.reflectance, f.roughness)};
+}
+
+template <int N>
+material::PaperSurface<N> Shading<N>::paper_surface(const Interaction<N>& surface) const {
+  const Factors f = factors(surface.point);
+  return {materials_[surface.point.material.value], surface.side == Side::Front, f.body,
+          f.reflectance, f.roughness};
+}
+
+template <int N>
+typename Shading<N>::Factors Shading<N>::factors(const SurfacePoint& point) const {
+  const material::Material& m = scene().materials[point.material.value];
+  const auto& textures = scene().textures;
+  const auto color_of = [&](const material::TextureSlot& slot) {
+    return basis_.template from_rgb<N>(textures[slot.texture.value].rgb(slot.transform(point.uv)));
+  };
+  Factors f;
+  if (m.body_texture.texture.valid()) f.body = color_of(m.body_texture);
+  if (!point.color.isOnes(0.0f))
+    f.body *=
+        basis_.template from_rgb<N>(make_rgb(point.color.x(), point.color.y(), point.color.z()));
+  if (m.reflectance_texture.texture.valid()) f.reflectance = color_of(m.reflectance_texture);
+  if (m.roughness_texture.texture.valid())
+    f.roughness = textures[m.roughness_texture.texture.value].channel(
+        m.roughness_texture.transform(point.uv), m.roughness_texture.channel);
+  return f;
 }
 
 template <int N>

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "material/bsdf.h"
+#include "material/paper.h"
 #include "material/spectral_basis.h"
 #include "scene/light_sampler.h"
 #include "scene/ray_query.h"
@@ -24,12 +25,20 @@ struct Interaction {
   [[nodiscard]] Vec3f to_world(const Vec3f& w) const { return frame.to_world(w); }
 };
 
+/// Whose weights light transport uses.
+enum class Weights {
+  Radiometric,  ///< the materials as they are
+  Paper         ///< smooth specular weights and k_df rho_d, k_tp_df tau_d of the paper's equation
+};
+
 /// A scene made ready for light transport with N lanes: materials and lights resolved in a basis.
 /// The one place where radiosity and ray tracing look materials up. Thread-safe.
 template <int N>
 class Shading {
  public:
-  Shading(const RayQuery& query, const material::SpectralBasis& basis);
+  /// \throws Error  for Weights::Paper, names a material that would return all the light it gets.
+  Shading(const RayQuery& query, const material::SpectralBasis& basis,
+          Weights weights = Weights::Radiometric);
 
   [[nodiscard]] const Scene& scene() const { return query_->scene(); }
   [[nodiscard]] const RayQuery& query() const { return *query_; }
@@ -44,6 +53,8 @@ class Shading {
                                                     Counter kind, float* distance = nullptr) const;
   /// \param wo  unit, away from the surface (minus the ray's direction).
   [[nodiscard]] Interaction<N> interact(const SurfacePoint& point, const Vec3f& wo) const;
+  /// The paper's constants of the same surface.
+  [[nodiscard]] material::PaperSurface<N> paper_surface(const Interaction<N>& surface) const;
   /// Share of light that goes straight along the ray: 0 behind opaque things and solids, the
   /// product of the panes' transmittance else.
   [[nodiscard]] Spectrum<N> transmittance(const Ray& ray, Counters& counters, Counter kind) const;
@@ -55,7 +66,16 @@ class Shading {
   const RayQuery* query_;
   material::SpectralBasis basis_;
   LightSampler<N> lights_;
+  std::vector<material::Material> sources_;  // what materials_ point to, for Weights::Paper
   std::vector<material::ResolvedMaterial<N>> materials_;
+
+  /// What textures and vertex colours multiply at a point.
+  struct Factors {
+    Spectrum<N> body = Spectrum<N>::one();
+    Spectrum<N> reflectance = Spectrum<N>::one();
+    float roughness = 1.0f;
+  };
+  [[nodiscard]] Factors factors(const SurfacePoint& point) const;
   [[nodiscard]] bool cut_out(const SurfacePoint& point) const;
 };
 
