@@ -11,6 +11,7 @@
 #include "material/cie.h"
 #include "material/error.h"
 #include "material/optical_constants.h"
+#include "scene/ray_query.h"
 #include "scene/scene_io.h"
 
 namespace atrium::scene {
@@ -623,6 +624,21 @@ TEST(ShippedScenes, CornellSpectraAreThePublishedOnes) {
   EXPECT_DOUBLE_EQ(value("red", 400), 0.040);
   EXPECT_DOUBLE_EQ(value("red", 688), 0.657);
   EXPECT_NEAR(luminance_of(material_named(model, "lamp").emission), 12000.0, 1e-2);
+}
+
+// The office stands on 130 m x 120 m of ground: the view is chosen inside it, standing, level, and
+// the same every time.
+TEST(ShippedScenes, InteriorViewOfTheOfficeIsInTheRoom) {
+  Model model;
+  read_yaml(model, std::filesystem::path(ATRIUM_SOURCE_DIR) / "scenes/office/office.yaml", {});
+  const Scene scene = build_scene(std::move(model));
+  const RayQuery query(scene);
+  const Camera camera = choose_interior_view(scene, query);
+  const Vec3d eye = camera.to_scene.translation() + scene.origin;
+  const Bounds room(Vec3d(0.3, 1.0, 0.3), Vec3d(12.9, 2.0, 6.9));
+  EXPECT_TRUE(room.contains(eye)) << eye.transpose();
+  EXPECT_NEAR(camera.to_scene.linear().col(2).y(), 0.0, 1e-9);
+  EXPECT_TRUE(choose_interior_view(scene, query).to_scene.isApprox(camera.to_scene, 0.0));
 }
 
 }  // namespace
