@@ -6,6 +6,7 @@
 
 #include "light_tree.h"
 #include "sky_sampler.h"
+#include "spherical_triangle.h"
 
 namespace atrium::scene {
 namespace {
@@ -316,6 +317,44 @@ struct LightSampler<N>::Impl {
     return r;
   }
 
+  // Cosine at the light of a direction that arrives there; 0 where it does not emit.
+  float emission_cosine(const EmissiveTriangle& t, const Vec3f& ng, const Vec3f& wi) const {
+    const float c = -ng.dot(wi);
+    return two_sided(t) ? std::abs(c) : std::max(0.0f, c);
+  }
+
+  struct Place {
+    SurfacePoint point;
+    Vec3f wi;
+    float distance, pdf;
+  };
+  // A point on an emissive triangle seen from p: by solid angle where that is well conditioned.
+  std::optional<Place> place_on(const EmissiveTriangle& t, const Vec3f& p, const Vec2f& u) const {
+    const std::array<Vec3f, 3> c = scene->corners(t.object, t.triangle);
+    const SphericalTriangle seen(c, p);
+    Vec2f bary = uniform_triangle(u);
+    if (seen.usable()) {
+      // Where the ray meets the plane, in barycentrics (Moeller & Trumbore 1997).
+      const Vec3d w = seen.sample(u), e1 = (c[1] - c[0]).cast<double>(),
+                  e2 = (c[2] - c[0]).cast<double>();
+      const Vec3d s = (p - c[0]).cast<double>(), h = w.cross(e2), q = s.cross(e1);
+      const double det = e1.dot(h);
+      if (det == 0.0) return std::nullopt;
+      const double b1 = std::clamp(s.dot(h) / det, 0.0, 1.0);
+      bary = Vec2d(b1, std::clamp(w.dot(q) / det, 0.0, 1.0 - b1)).cast<float>();
+    }
+    Place place{surface_point(*scene, t.object, t.triangle, bary.x(), bary.y()), {}, 0.0f, 0.0f};
+    const Vec3f d = place.point.position - p;
+    place.distance = d.norm();
+    if (!(place.distance > 0.0f) || !(t.area > 0.0f)) return std::nullopt;
+    place.wi = d / place.distance;
+    const float cosine = emission_cosine(t, place.point.ng, place.wi);
+    if (!(cosine > 1e-6f)) return std::nullopt;
+    place.pdf = seen.usable() ? static_cast<float>(1.0 / seen.solid_angle())
+                              : place.distance * place.distance / (cosine * t.area);
+    return place;
+  }
+
   std::optional<LightSample<N>> sample_finite(const Vec3f& p, const Vec3f& normal, float u_choice,
                                               const Vec2f& u, float group_probability) const {
     const auto choice = tree.choose(p, normal, u_choice);
@@ -336,18 +375,12 @@ struct LightSampler<N>::Impl {
     }
     const std::uint32_t index = choice->light - static_cast<std::uint32_t>(positional.size());
     const EmissiveTriangle& t = triangles[index];
-    const Vec2f b = uniform_triangle(u);
-    const SurfacePoint q = surface_point(*scene, t.object, t.triangle, b.x(), b.y());
-    const Vec3f d = q.position - p;
-    const float distance2 = d.squaredNorm();
-    if (!(distance2 > 0.0f) || !(t.area > 0.0f)) return std::nullopt;
-    s.distance = std::sqrt(distance2);
-    s.wi = d / s.distance;
-    float cos_light = -q.ng.dot(s.wi);
-    if (two_sided(t)) cos_light = std::abs(cos_light);
-    if (!(cos_light > 1e-6f)) return std::nullopt;
-    s.radiance = radiance_at(q);
-    s.pdf *= distance2 / (cos_light * t.area);
+    const auto place = place_on(t, p, u);
+    if (!place) return std::nullopt;
+    s.wi = place->wi;
+    s.distance = place->distance;
+    s.radiance = radiance_at(place->point);
+    s.pdf *= place->pdf;
     s.light = static_cast<std::uint32_t>(scene->lights.size()) + index;
     return s;
   }
@@ -403,13 +436,14 @@ float LightSampler<N>::pdf(const Vec3f& p, const Vec3f& normal, const SurfacePoi
   if (first == Impl::kNone || !(distance > 0.0f)) return 0.0f;
   const std::uint32_t index = first + hit.triangle;
   const EmissiveTriangle& t = m.triangles[index];
-  const Vec3f wi = (hit.position - p) / distance;
-  float cos_light = -hit.ng.dot(wi);
-  if (m.two_sided(t)) cos_light = std::abs(cos_light);
-  if (!(cos_light > 1e-6f) || !(t.area > 0.0f)) return 0.0f;
+  const float cosine = m.emission_cosine(t, hit.ng, (hit.position - p) / distance);
+  if (!(cosine > 1e-6f) || !(t.area > 0.0f)) return 0.0f;
+  const SphericalTriangle seen(m.scene->corners(t.object, t.triangle), p);
+  const float density = seen.usable() ? static_cast<float>(1.0 / seen.solid_angle())
+                                      : distance * distance / (cosine * t.area);
   const float choice =
       m.tree.probability(p, normal, static_cast<std::uint32_t>(m.positional.size()) + index);
-  return choice / static_cast<float>(m.groups()) * distance * distance / (cos_light * t.area);
+  return choice / static_cast<float>(m.groups()) * density;
 }
 
 template <int N>
