@@ -32,16 +32,16 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
     const double rays = rows.rays[k];
     const double exposed = rays / (rays + rows.dropped[k]);
     const double area = static_cast<double>(problem.area(i)) * exposed;
-    const double b = static_cast<double>(leaving(problem.sides, i, total_exchange(problem, s, i),
-                                                 total_exchange(problem, s, i ^ 1U))
-                                             .mean());
+    const double b = static_cast<double>(
+        leaving(problem.sides, i, total_exchange(problem, s, i), total_exchange(problem, s, i ^ 1U))
+            .mean());
     const double escaped = static_cast<double>(rows.escaped[k]) / rays;
     f.escaped += area * b * escaped;
-    f.absorbed += area * (absorbed_per_area(problem, s, i) +
-                          b * (1.0 - row_sum(rows, k) / rays - escaped));
-    variance += area * area *
-                static_cast<double>(s.direct.variance[i] + s.caustic.variance[i] +
-                                    s.indirect.variance[i]);
+    f.absorbed +=
+        area * (absorbed_per_area(problem, s, i) + b * (1.0 - row_sum(rows, k) / rays - escaped));
+    variance +=
+        area * area *
+        static_cast<double>(s.direct.variance[i] + s.caustic.variance[i] + s.indirect.variance[i]);
   }
   f.standard_error = std::sqrt(variance);
   return f;
@@ -55,9 +55,9 @@ void require_diffuse(const Problem<N>& problem, const char* solver) {
                 "materials; use solver 'rows'");
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                \
+#define ATRIUM_INSTANTIATE(N)                                                                 \
   template FluxBalance flux_balance(const Problem<N>&, const Solution<N>&, const Photons<N>&, \
-                                    const Rows<N>&);                                         \
+                                    const Rows<N>&);                                          \
   template void require_diffuse(const Problem<N>&, const char*);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -33,17 +33,17 @@ class PhotonTracer {
     const auto e = problem_.shading.lights().sample_emission(choice, position, sampler.next_2d());
     if (!e) return;
     double left = static_cast<double>(e->weight.mean());
-    const PathEnd<N> end = follow<N>(
-        problem_, {e->origin, e->direction}, e->weight, sampler, material::Transport::Flux,
-        Counter::RaysPhoton, counters,
-        [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& flux,
-            bool specular) {
-          left -= static_cast<double>(flux.mean());
-          if (!specular) return;
-          const SideIndex i = problem_.side_at(at.point, at.side);
-          if (i == kNoSide) return;
-          batch.deposits.push_back({i, flux, flux * at.bsdf.body_weight(wo.z())});
-        });
+    const PathEnd<N> end =
+        follow<N>(problem_, {e->origin, e->direction}, e->weight, sampler,
+                  material::Transport::Flux, Counter::RaysPhoton, counters,
+                  [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& flux,
+                      bool specular) {
+                    const SideIndex i = problem_.side_at(at.point, at.side);
+                    if (i == kNoSide) return;  // the inner face of a solid: lost
+                    left -= static_cast<double>(flux.mean());
+                    if (!specular) return;
+                    batch.deposits.push_back({i, flux, flux * at.bsdf.body_weight(wo.z())});
+                  });
     const double escaped = static_cast<double>(end.escaped.mean());
     batch.escaped += escaped;
     batch.absorbed += left - escaped;
@@ -58,7 +58,8 @@ template <int N>
 void add_deposits(const Problem<N>& problem, const Batch<N>& batch, double photons,
                   Photons<N>& result) {
   for (const Deposit<N>& d : batch.deposits) {
-    const float scale = static_cast<float>(1.0 / (photons * static_cast<double>(problem.area(d.side))));
+    const float scale =
+        static_cast<float>(1.0 / (photons * static_cast<double>(problem.area(d.side))));
     Irradiance<N>& e = result.caustic.irradiance;
     e.plain[d.side] += d.flux * scale;
     if (!e.body.empty()) e.body[d.side] += d.body * scale;

@@ -112,11 +112,13 @@ class Cutter {
                       Polygon& out) {
     const Polygon* source = &in;
     if (k > 0) {
-      clip_polygon(in, scratch_, [&](const Vertex& a) { return a.*axis - k; }, lerp);
+      clip_polygon(
+          in, scratch_, [&](const Vertex& a) { return a.*axis - k; }, lerp);
       source = &scratch_;
     }
     if (k + 1 < count)
-      clip_polygon(*source, out, [&](const Vertex& a) { return k + 1.0 - a.*axis; }, lerp);
+      clip_polygon(
+          *source, out, [&](const Vertex& a) { return k + 1.0 - a.*axis; }, lerp);
     else
       out = *source;
     return out;
@@ -148,8 +150,12 @@ CutFacet cut_facet(const Corners& corners, const Facet& facet, double cell, doub
   std::stable_sort(cutter.pieces.begin(), cutter.pieces.end(),
                    [](const CellPiece& a, const CellPiece& b) { return a.cell < b.cell; });
   CutFacet result;
-  result.grid = {grid.origin.cast<float>(), grid.axis_u.cast<float>(), grid.axis_v.cast<float>(),
-                 grid.nx, grid.ny, 0};
+  result.grid = {grid.origin.cast<float>(),
+                 grid.axis_u.cast<float>(),
+                 grid.axis_v.cast<float>(),
+                 grid.nx,
+                 grid.ny,
+                 0};
   for (CellPiece& p : cutter.pieces) {
     if (result.element_cell.empty() || result.element_cell.back() != p.cell) {
       result.element_cell.push_back(p.cell);

@@ -67,8 +67,7 @@ class SideLight {
     const auto s = problem_.shading.lights().sample(p.position, normal, choice, sampler.next_2d());
     Arrival result;
     if (!s || !(s->pdf > 0.0f)) return result;
-    const bool is_surface =
-        !s->dirac && s->light >= light_count_ && std::isfinite(s->distance);
+    const bool is_surface = !s->dirac && s->light >= light_count_ && std::isfinite(s->distance);
     if (which_ == DirectLights::NoSurfaces && is_surface) return result;
     const float cosine = s->wi.dot(normal);
     if (!(cosine > 0.0f) || s->radiance.is_zero()) return result;
@@ -100,7 +99,7 @@ Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights wh
   return result;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                     \
+#define ATRIUM_INSTANTIATE(N) \
   template Estimate<N> direct_light(const Problem<N>&, int, DirectLights, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

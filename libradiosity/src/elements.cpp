@@ -63,7 +63,8 @@ CellSize solve_cell_size(const std::vector<double>& areas, double budget) {
       (cell_count(areas, std::exp(middle), cap) > budget ? log_low : log_high) = middle;
     }
     const double h = std::exp(log_high);
-    if (cap >= budget || cell_count(areas, h, cap) > 0.9 * budget) return {h, std::min(cap, 2.0 * budget)};
+    if (cap >= budget || cell_count(areas, h, cap) > 0.9 * budget)
+      return {h, std::min(cap, 2.0 * budget)};
   }
 }
 
@@ -149,8 +150,7 @@ class Builder {
   void cut(std::size_t object) {
     const Corners corners = object_corners(scene_, ObjectId(object));
     for (const Facet& f : parts_[object].facets)
-      parts_[object].cuts.push_back(
-          cut_facet(corners, f, cell_, cap_));
+      parts_[object].cuts.push_back(cut_facet(corners, f, cell_, cap_));
   }
 
   Elements assemble() {
@@ -177,7 +177,8 @@ class Builder {
       field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
     for (std::size_t k = 0; k < cut.element_cell.size(); ++k) {
       const std::uint32_t cell = cut.element_cell[k];
-      field.cell_element[cut.grid.first_cell + cell] = first_element + static_cast<std::uint32_t>(k);
+      field.cell_element[cut.grid.first_cell + cell] =
+          first_element + static_cast<std::uint32_t>(k);
       field.element_facet.push_back(facet_id);
       field.element_cell.push_back(cell);
       float area = 0.0f;

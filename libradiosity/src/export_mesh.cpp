@@ -115,7 +115,8 @@ class Exporter {
     const Vec3d n = e1.cross(e2);
     const double n2 = n.squaredNorm();
     if (!(n2 > 0.0)) return {1.0f / 3.0f, 1.0f / 3.0f};
-    return {static_cast<float>(d.cross(e2).dot(n) / n2), static_cast<float>(e1.cross(d).dot(n) / n2)};
+    return {static_cast<float>(d.cross(e2).dot(n) / n2),
+            static_cast<float>(e1.cross(d).dot(n) / n2)};
   }
 
   Spectrum<N> texture(const material::TextureSlot& slot, const Vec2f& uv) const {
@@ -130,8 +131,8 @@ class Exporter {
     body *= basis_.from_rgb<N>(make_rgb(at.color.x(), at.color.y(), at.color.z()));
     const material::Bsdf<N> bsdf(resolved, front, body, Spectrum<N>::one(), 1.0f);
     Surface<N> s;
-    s.reflectance = bsdf.coupled() ? bsdf.diffuse_albedo()
-                                   : bsdf.diffuse_reflectance(Vec3f(0.0f, 0.0f, 1.0f));
+    s.reflectance =
+        bsdf.coupled() ? bsdf.diffuse_albedo() : bsdf.diffuse_reflectance(Vec3f(0.0f, 0.0f, 1.0f));
     s.transmittance = bsdf.diffuse_transmittance();
     s.coupled = bsdf.coupled();
     if (m.emissive() && (front || m.emits_both_sides))
@@ -140,7 +141,8 @@ class Exporter {
     return s;
   }
 
-  Spectrum<N> sum(const SurfaceField::Quantities& q, const SurfaceField::Stencil& s, Side side) const {
+  Spectrum<N> sum(const SurfaceField::Quantities& q, const SurfaceField::Stencil& s,
+                  Side side) const {
     return field_.interpolate<N>(q.direct, s, side) + field_.interpolate<N>(q.caustic, s, side) +
            field_.interpolate<N>(q.indirect, s, side);
   }
@@ -161,8 +163,7 @@ class Exporter {
     const auto rgb = [&](const Spectrum<N>& v) { return basis_.to_rgb<N>(v); };
     return {rgb(field_.interpolate<N>(q.direct, s, side)),
             rgb(field_.interpolate<N>(q.caustic, s, side)),
-            rgb(field_.interpolate<N>(q.indirect, s, side)),
-            rgb(sum(q, s, side)),
+            rgb(field_.interpolate<N>(q.indirect, s, side)), rgb(sum(q, s, side)),
             rgb(surface.exitance + surface.reflectance * own + surface.transmittance * other)};
   }
 
@@ -174,7 +175,8 @@ class Exporter {
     arrays.push_back(std::move(a));
   }
 
-  void add_records(const std::vector<Record>& records, std::vector<PolygonMesh::Array>& arrays) const {
+  void add_records(const std::vector<Record>& records,
+                   std::vector<PolygonMesh::Array>& arrays) const {
     using OneSide = Record::OneSide;
     const std::pair<const char*, Rgb OneSide::*> members[] = {
         {"irradiance_direct", &OneSide::direct},
@@ -190,7 +192,8 @@ class Exporter {
         add_rgb(arrays, std::string(name) + (back ? "_back" : ""), values);
       }
     PolygonMesh::Array lux{"illuminance_lux", 1, {}};
-    const auto scale = static_cast<float>(scene_.unit == scene::RadianceUnit::Nit ? 1.0 : kLumensPerWatt);
+    const auto scale =
+        static_cast<float>(scene_.unit == scene::RadianceUnit::Nit ? 1.0 : kLumensPerWatt);
     for (const Record& r : records) lux.values.push_back(scale * luminance(r.front.irradiance));
     arrays.push_back(std::move(lux));
   }
@@ -204,7 +207,8 @@ class Exporter {
     };
     const auto object = [&](std::size_t p) { return elements_.pieces[p].object.value; };
     add("stderr", [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U]; });
-    add("stderr_back", [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U + 1U]; });
+    add("stderr_back",
+        [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U + 1U]; });
     add("element_id", [&](std::size_t p) { return element_of_[p]; });
     add("level", [](std::size_t) { return 0; });
     add("material_id", [&](std::size_t p) { return scene_.objects[object(p)].material.value; });

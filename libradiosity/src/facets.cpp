@@ -51,14 +51,22 @@ Geometry measure(const Corners& corners) {
   g.area.resize(corners.size(), 0.0);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3d a = corners[i][0].cast<double>();
-    const Vec3d n =
-        (corners[i][1].cast<double>() - a).cross(corners[i][2].cast<double>() - a);
+    const Vec3d n = (corners[i][1].cast<double>() - a).cross(corners[i][2].cast<double>() - a);
     const double twice = n.norm();
     if (!(twice > 0.0) || !std::isfinite(twice)) continue;
     g.normal[i] = n / twice;
     g.area[i] = 0.5 * twice;
   }
   return g;
+}
+
+/// A library does not print; OpenMesh's error stream is one for the whole process.
+void silence_openmesh() {
+  static const bool once = [] {
+    omerr().disable();
+    return true;
+  }();
+  static_cast<void>(once);
 }
 
 /// OpenMesh refuses a face that would make an edge or vertex non-manifold: such a face gets
@@ -70,8 +78,7 @@ Neighbours adjacency(const Corners& corners, const Geometry& geometry) {
   welded.reserve(corners.size());
   std::vector<HalfEdgeMesh::FaceHandle> face_of(corners.size());
   std::vector<std::uint32_t> triangle_of;
-  const bool log_enabled = omerr().is_enabled();
-  omerr().disable();  // a library does not print
+  silence_openmesh();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (geometry.area[i] == 0.0) continue;
     std::array<HalfEdgeMesh::VertexHandle, 3> v;
@@ -88,7 +95,6 @@ Neighbours adjacency(const Corners& corners, const Geometry& geometry) {
     face_of[i] = f;
     triangle_of.push_back(static_cast<std::uint32_t>(i));
   }
-  if (log_enabled) omerr().enable();
   Neighbours result(corners.size(), {kNone, kNone, kNone});
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!face_of[i].is_valid()) continue;
@@ -147,7 +153,8 @@ class Grower {
   }
 
   void flood(Facet& facet, std::uint32_t seed, std::uint32_t id) {
-    const Vec3d origin = (corners_[seed][0] + corners_[seed][1] + corners_[seed][2]).cast<double>() / 3.0;
+    const Vec3d origin =
+        (corners_[seed][0] + corners_[seed][1] + corners_[seed][2]).cast<double>() / 3.0;
     facet.triangles.push_back(seed);
     facet_of_[seed] = id;
     for (std::size_t next = 0; next < facet.triangles.size(); ++next)
@@ -205,7 +212,8 @@ ClumpKey clump_key(const Facet& f, double voxel) {
   f.normal.cwiseAbs().maxCoeff(&axis);
   ClumpKey key{axis * 2 + (f.normal[axis] < 0.0 ? 1 : 0), 0, 0, 0};
   for (int i = 0; i < 3; ++i)
-    key[static_cast<std::size_t>(i) + 1] = static_cast<std::int64_t>(std::floor(f.centre[i] / voxel));
+    key[static_cast<std::size_t>(i) + 1] =
+        static_cast<std::int64_t>(std::floor(f.centre[i] / voxel));
   return key;
 }
 

@@ -17,8 +17,8 @@ struct Facet {
   Vec3d normal = Vec3d::UnitZ();  ///< of the grid's plane
   Vec3d axis = Vec3d::UnitX();    ///< along the longest boundary edge, in the plane
   Vec3d centre = Vec3d::Zero();
-  double area = 0.0;              ///< of the triangles [m^2]
-  bool clump = false;             ///< many tiny regions merged: always one element
+  double area = 0.0;   ///< of the triangles [m^2]
+  bool clump = false;  ///< many tiny regions merged: always one element
 };
 
 struct FacetOptions {

@@ -9,8 +9,8 @@ namespace atrium::radiosity {
 /// What a path does besides reaching diffuse surfaces.
 template <int N>
 struct PathEnd {
-  Spectrum<N> escaped;       ///< weight that left the scene
-  bool inside_solid = false; ///< the first surface was the inner face of a closed opaque body
+  Spectrum<N> escaped;        ///< weight that left the scene
+  bool inside_solid = false;  ///< the first surface was the inner face of a closed opaque body
 };
 
 /// Extinction of the body that a path is in; bodies may be nested.
@@ -76,8 +76,8 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
     if (!at.bsdf.has(material::kSpecularEvents)) return end;
 
     const Vec2f choice = sampler.next_2d();
-    const auto s = at.bsdf.sample(wo, choice.x(), sampler.next_2d(), material::kSpecularEvents,
-                                  transport);
+    const auto s =
+        at.bsdf.sample(wo, choice.x(), sampler.next_2d(), material::kSpecularEvents, transport);
     if (!s) return end;
     weight *= s->weight;
     const float survival = std::min(1.0f, 4.0f * weight.max());

@@ -121,10 +121,9 @@ double parallel_rectangles(double a, double b, double c) {
   const double y = b / c;
   const double x2 = 1.0 + x * x;
   const double y2 = 1.0 + y * y;
-  const double sum = 0.5 * std::log(x2 * y2 / (x2 + y2 - 1.0)) +
-                     x * std::sqrt(y2) * std::atan(x / std::sqrt(y2)) +
-                     y * std::sqrt(x2) * std::atan(y / std::sqrt(x2)) - x * std::atan(x) -
-                     y * std::atan(y);
+  const double sum =
+      0.5 * std::log(x2 * y2 / (x2 + y2 - 1.0)) + x * std::sqrt(y2) * std::atan(x / std::sqrt(y2)) +
+      y * std::sqrt(x2) * std::atan(y / std::sqrt(x2)) - x * std::atan(x) - y * std::atan(y);
   return 2.0 * sum / (std::numbers::pi * x * y);
 }
 

@@ -23,12 +23,11 @@ class Gatherer {
       scene::Sampler sampler(problem_.options.seed, i, index);
       const HemisphereRay<N> start(problem_, i, sampler);
       Spectrum<N> arriving;
-      const PathEnd<N> end = follow<N>(
-          problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
-          Counter::RaysRow, counters,
-          [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight, bool) {
-            arriving += weight * radiosity_at(at, wo);
-          });
+      const PathEnd<N> end =
+          follow<N>(problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
+                    Counter::RaysRow, counters,
+                    [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight,
+                        bool) { arriving += weight * radiosity_at(at, wo); });
       if (end.inside_solid) continue;
       ++valid;
       plain += arriving;

@@ -137,14 +137,12 @@ class MatrixSolver {
       if (k == few && (seen == 0.0 || seen == all)) break;
       scene::Sampler sampler(problem_.options.seed + i, static_cast<std::uint32_t>(j),
                              static_cast<std::uint32_t>(k));
-      const scene::SurfacePoint p =
-          sample_patch(scene_, problem_.points, a, sampler.next_2d());
-      const scene::SurfacePoint q =
-          sample_patch(scene_, problem_.points, b, sampler.next_2d());
+      const scene::SurfacePoint p = sample_patch(scene_, problem_.points, a, sampler.next_2d());
+      const scene::SurfacePoint q = sample_patch(scene_, problem_.points, b, sampler.next_2d());
       const Vec3f d = q.position - p.position;
       const float r2 = d.squaredNorm();
-      const float kernel = (a.back ? -1.0f : 1.0f) * p.ng.dot(d) * (b.back ? 1.0f : -1.0f) *
-                           q.ng.dot(d) / (r2 * r2);
+      const float kernel =
+          (a.back ? -1.0f : 1.0f) * p.ng.dot(d) * (b.back ? 1.0f : -1.0f) * q.ng.dot(d) / (r2 * r2);
       if (!(kernel > 0.0f) || p.ng.dot(d) * (a.back ? -1.0f : 1.0f) <= 0.0f) continue;
       const float distance = std::sqrt(r2);
       const Vec3f w = d / distance;
@@ -179,7 +177,9 @@ class MatrixSolver {
     const Eigen::VectorXd b = system.partialPivLu().solve(right);
     const double limit = 1e7 * (right.cwiseAbs().maxCoeff() + 1e-300);
     if (!(b.cwiseAbs().maxCoeff() <= limit) || !(b.minCoeff() >= -limit * 1e-10))
-      throw Error("radiosity: a closed enclosure reflects all light (reflectance 1), there is no finite solution");
+      throw Error(
+          "radiosity: a closed enclosure reflects all light (reflectance 1), there is no finite "
+          "solution");
     radiosity_.conservativeResize(n, N);
     radiosity_.col(lane) = b;
     const Eigen::VectorXd indirect = f * b;
@@ -218,7 +218,8 @@ class MatrixSolver {
     for (std::size_t k = 0; k < size_; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
       f.escaped += radiosity_.row(row).mean() * (patches_[k].area - exchange_.row(row).sum());
-      f.absorbed += patches_[k].area * absorbed_per_area(problem_, result_, problem_.sides.active[k]);
+      f.absorbed +=
+          patches_[k].area * absorbed_per_area(problem_, result_, problem_.sides.active[k]);
     }
   }
 

@@ -48,7 +48,8 @@ std::optional<Polygon> merged(const std::vector<Polygon>& pieces, double area) {
       flat.emplace_back(x.dot(p - origin), y.dot(p - origin));
     }
   Polygon hull;
-  for (const Vec2d& p : convex_hull(flat, 1e-6 * area)) hull.push_back(origin + p.x() * x + p.y() * y);
+  for (const Vec2d& p : convex_hull(flat, 1e-6 * area))
+    hull.push_back(origin + p.x() * x + p.y() * y);
   if (hull.size() < 3) return std::nullopt;
   const double hull_area = 0.5 * polygon_area_vector(hull).norm();
   if (std::abs(hull_area - area) > 1e-5 * area) return std::nullopt;
@@ -70,13 +71,14 @@ struct Node {
   double a, b, c, weight;
 };
 /// Degree 5 on a triangle, weights sum to 1 (Radon 1948).
-constexpr std::array<Node, 7> kRule{{{1.0 / 3, 1.0 / 3, 1.0 / 3, 0.225},
-                                     {0.0597158717897698, 0.4701420641051151, 0.4701420641051151, 0.1323941527885062},
-                                     {0.4701420641051151, 0.0597158717897698, 0.4701420641051151, 0.1323941527885062},
-                                     {0.4701420641051151, 0.4701420641051151, 0.0597158717897698, 0.1323941527885062},
-                                     {0.7974269853530873, 0.1012865073234563, 0.1012865073234563, 0.1259391805448271},
-                                     {0.1012865073234563, 0.7974269853530873, 0.1012865073234563, 0.1259391805448271},
-                                     {0.1012865073234563, 0.1012865073234563, 0.7974269853530873, 0.1259391805448271}}};
+constexpr std::array<Node, 7> kRule{
+    {{1.0 / 3, 1.0 / 3, 1.0 / 3, 0.225},
+     {0.0597158717897698, 0.4701420641051151, 0.4701420641051151, 0.1323941527885062},
+     {0.4701420641051151, 0.0597158717897698, 0.4701420641051151, 0.1323941527885062},
+     {0.4701420641051151, 0.4701420641051151, 0.0597158717897698, 0.1323941527885062},
+     {0.7974269853530873, 0.1012865073234563, 0.1012865073234563, 0.1259391805448271},
+     {0.1012865073234563, 0.7974269853530873, 0.1012865073234563, 0.1259391805448271},
+     {0.1012865073234563, 0.1012865073234563, 0.7974269853530873, 0.1259391805448271}}};
 
 /// Integral over polygon a of the point factor to b, where a point is in front of b.
 double point_rule(const Polygon& a, const Polygon& b) {

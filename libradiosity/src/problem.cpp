@@ -30,8 +30,7 @@ Vec3f sample_polygon(const std::vector<Vec3f>& corners, Vec2f u) {
   const std::size_t fans = std::min(corners.size() - 2, areas.size());
   float total = 0.0f;
   for (std::size_t i = 0; i < fans; ++i)
-    total += areas[i] =
-        (corners[i + 1] - corners[0]).cross(corners[i + 2] - corners[0]).norm();
+    total += areas[i] = (corners[i + 1] - corners[0]).cross(corners[i + 2] - corners[0]).norm();
   float x = u.x() * total;
   std::size_t fan = 0;
   while (fan + 1 < fans && x >= areas[fan]) x -= areas[fan++];
@@ -91,7 +90,8 @@ class SideProperties {
     const bool colours = !shading_.scene().meshes[object.mesh.value].colors.empty();
     const int count = any_texture(material) || colours ? 16 : 1;
     for (const Side side : {Side::Front, Side::Back}) {
-      if (side == Side::Back && (sides.closed_opaque[piece.object.value] != 0 || material.source->one_sided))
+      if (side == Side::Back &&
+          (sides.closed_opaque[piece.object.value] != 0 || material.source->one_sided))
         continue;
       average(sides, element, side, count);
     }
@@ -184,14 +184,14 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
   });
   for (SideIndex i = 0; i < n; ++i)
     if (sides.is_active[i] != 0) sides.active.push_back(i);
-  sides.any_coupled =
-      std::any_of(sides.coupled.begin(), sides.coupled.end(), [](std::uint8_t c) { return c != 0; });
+  sides.any_coupled = std::any_of(sides.coupled.begin(), sides.coupled.end(),
+                                  [](std::uint8_t c) { return c != 0; });
 }
 
 template <int N>
 SideIndex Problem<N>::side_at(const SurfacePoint& point, Side side) const {
-  const std::uint32_t element = elements.layout.element_at(shading.scene(), point.object,
-                                                           point.triangle, point.position);
+  const std::uint32_t element =
+      elements.layout.element_at(shading.scene(), point.object, point.triangle, point.position);
   if (element == SurfaceField::kNone) return kNoSide;
   const SideIndex i = side_index(element, side);
   return sides.is_active[i] != 0 ? i : kNoSide;

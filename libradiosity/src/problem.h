@@ -36,13 +36,13 @@ class ElementPoints {
 /// What the elements' sides do with light.
 template <int N>
 struct Sides {
-  std::vector<SideIndex> active;             ///< sides that take part, ascending
-  std::vector<std::uint8_t> is_active;       ///< by side
-  std::vector<Spectrum<N>> reflectance;      ///< diffuse flux that leaves per irradiance of this side
-  std::vector<Spectrum<N>> transmittance;    ///< ... per irradiance of the other side
-  std::vector<std::uint8_t> coupled;         ///< by element: E_B is what reflectance applies to
+  std::vector<SideIndex> active;           ///< sides that take part, ascending
+  std::vector<std::uint8_t> is_active;     ///< by side
+  std::vector<Spectrum<N>> reflectance;    ///< diffuse flux that leaves per irradiance of this side
+  std::vector<Spectrum<N>> transmittance;  ///< ... per irradiance of the other side
+  std::vector<std::uint8_t> coupled;       ///< by element: E_B is what reflectance applies to
   bool any_coupled = false;
-  std::vector<std::uint8_t> closed_opaque;   ///< by object: a hit on its back means "inside"
+  std::vector<std::uint8_t> closed_opaque;  ///< by object: a hit on its back means "inside"
 };
 
 /// Everything that the passes share and none of them changes.

@@ -198,7 +198,8 @@ class Sweeper {
     scene::parallel_for(mine, 16, [&](std::size_t begin, std::size_t end) {
       for_sides(group, begin, end, [&](std::size_t k) { fresh_[k] = row_value(k); });
     });
-    for_sides(group, 0, mine, [&](std::size_t k) { result_[problem_.sides.active[k]] = fresh_[k]; });
+    for_sides(group, 0, mine,
+              [&](std::size_t k) { result_[problem_.sides.active[k]] = fresh_[k]; });
     std::vector<float> changes((mine + 15) / 16, 0.0f);
     scene::parallel_for(mine, 16, [&](std::size_t begin, std::size_t end) {
       for_sides(group, begin, end, [&](std::size_t k) {
@@ -278,22 +279,25 @@ Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideV
     const double decay = before > 0.0f ? static_cast<double>(change / before) : 0.0;
     before = change;
     // What is still missing is the geometric series of the changes to come.
-    const double missing = decay < 1.0 ? state.residual * std::max(1.0, decay / (1.0 - decay)) : 1.0;
+    const double missing =
+        decay < 1.0 ? state.residual * std::max(1.0, decay / (1.0 - decay)) : 1.0;
     if (state.iterations > 1 && missing <= problem.options.tolerance) {
       state.converged = true;
       break;
     }
     changes.push_back(static_cast<double>(change));
     if (does_not_decay(changes))
-      throw Error("radiosity: a closed enclosure reflects all light (reflectance 1), there is no finite solution");
+      throw Error(
+          "radiosity: a closed enclosure reflects all light (reflectance 1), there is no finite "
+          "solution");
   }
   return state;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                     \
-  template Rows<N> trace_rows(const Problem<N>&, Rows<N>, const std::vector<std::uint8_t>&, int,  \
-                              int, Work&, Counters&);                                             \
-  template Iteration solve_rows(const Problem<N>&, const Rows<N>&, const SideValues<N>&,          \
+#define ATRIUM_INSTANTIATE(N)                                                                    \
+  template Rows<N> trace_rows(const Problem<N>&, Rows<N>, const std::vector<std::uint8_t>&, int, \
+                              int, Work&, Counters&);                                            \
+  template Iteration solve_rows(const Problem<N>&, const Rows<N>&, const SideValues<N>&,         \
                                 const SideValues<N>&, SideValues<N>&, Work&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -15,15 +15,15 @@ struct Rows {
   struct Entry {
     std::uint32_t target;  ///< SideIndex; with kChromatic, `weight` is not used
     float weight;
-    float body;            ///< weight with B(mu) / B-bar of the receiver, for E_B
+    float body;              ///< weight with B(mu) / B-bar of the receiver, for E_B
     std::uint32_t spectral;  ///< index into `spectral` if chromatic
   };
-  std::vector<std::uint64_t> first;      ///< active sides + 1
+  std::vector<std::uint64_t> first;  ///< active sides + 1
   std::vector<Entry> entries;
-  std::vector<Spectrum<N>> spectral;     ///< weights that differ between lanes
-  std::vector<std::uint32_t> rays;       ///< valid ones, by active side
-  std::vector<std::uint32_t> dropped;    ///< origins inside closed bodies
-  std::vector<float> escaped;            ///< summed weight that left the scene, lane mean
+  std::vector<Spectrum<N>> spectral;   ///< weights that differ between lanes
+  std::vector<std::uint32_t> rays;     ///< valid ones, by active side
+  std::vector<std::uint32_t> dropped;  ///< origins inside closed bodies
+  std::vector<float> escaped;          ///< summed weight that left the scene, lane mean
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
   /// Sum over the row of weight * values[target].

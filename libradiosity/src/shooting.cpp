@@ -37,9 +37,9 @@ class ShootingSolver {
     add_ambient();
     // Hemisphere rays count what escapes; the exchange itself does not need them.
     constexpr int kEscapeRays = 16;
-    const Rows<N> rows = trace_rows<N>(
-        problem_, {}, std::vector<std::uint8_t>(problem_.sides.active.size(), 1), 0, kEscapeRays,
-        work_, counters_);
+    const Rows<N> rows =
+        trace_rows<N>(problem_, {}, std::vector<std::uint8_t>(problem_.sides.active.size(), 1), 0,
+                      kEscapeRays, work_, counters_);
     result_.flux = flux_balance(problem_, result_, photons, rows);
     return std::move(result_);
   }
@@ -53,7 +53,8 @@ class ShootingSolver {
     const std::vector<SideIndex>& active = problem_.sides.active;
     double initial = 0.0;
     for (const SideIndex i : active) initial += flux(i);
-    const std::size_t most = active.size() * static_cast<std::size_t>(problem_.options.max_iterations);
+    const std::size_t most =
+        active.size() * static_cast<std::size_t>(problem_.options.max_iterations);
     for (shots_ = 0; shots_ < most; ++shots_) {
       double left = 0.0;
       SideIndex brightest = kNoSide;
@@ -80,8 +81,9 @@ class ShootingSolver {
     scene::parallel_for(active.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         received_[active[k]] =
-            active[k] / 2 == i / 2 ? 0.0f
-                                   : static_cast<float>(factor(active[k], shooter, counts[begin / kGrain]));
+            active[k] / 2 == i / 2
+                ? 0.0f
+                : static_cast<float>(factor(active[k], shooter, counts[begin / kGrain]));
     });
     for (const Counters& c : counts) counters_ += c;
     for (const SideIndex j : active) {
@@ -140,7 +142,8 @@ class ShootingSolver {
       area += static_cast<double>(a);
       left += unshot_[i] * a;
       absorbed_share += (Spectrum<N>::one() - problem_.sides.reflectance[i] -
-                         problem_.sides.transmittance[i ^ 1U]) * a;
+                         problem_.sides.transmittance[i ^ 1U]) *
+                        a;
     }
     if (!(area > 0.0)) return;
     Spectrum<N> ambient;

@@ -18,7 +18,8 @@ std::vector<float> flatten(const SideValues<N>& values) {
 
 template <int N>
 bool all_zero(const SideValues<N>& values) {
-  return std::all_of(values.begin(), values.end(), [](const Spectrum<N>& v) { return v.is_zero(); });
+  return std::all_of(values.begin(), values.end(),
+                     [](const Spectrum<N>& v) { return v.is_zero(); });
 }
 
 /// Caustics stay empty if there are none: who reads the field skips them.
@@ -52,9 +53,12 @@ void complete_body(Estimate<N>& e, const Problem<N>& problem) {
 template <int N>
 Solution<N> run_solver(const Problem<N>& problem, Work& work, scene::Counters& counters) {
   switch (problem.options.solver) {
-    case Solver::Matrix: return solve_with_matrix(problem, work, counters);
-    case Solver::Shooting: return solve_with_shooting(problem, work, counters);
-    case Solver::Rows: break;
+    case Solver::Matrix:
+      return solve_with_matrix(problem, work, counters);
+    case Solver::Shooting:
+      return solve_with_shooting(problem, work, counters);
+    case Solver::Rows:
+      break;
   }
   return solve_with_rows(problem, work, counters);
 }
@@ -75,7 +79,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   result.iterations = solution.iteration.iterations;
   result.error_estimate = solution.error_estimate;
   result.complete = work.stopped_by().empty();
-  result.stopped_by = !result.complete ? work.stopped_by()
+  result.stopped_by = !result.complete               ? work.stopped_by()
                       : solution.iteration.converged ? "tolerance"
                                                      : "iterations";
   result.counters[Counter::Iterations] += static_cast<std::uint64_t>(result.iterations);
@@ -92,11 +96,9 @@ SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& b
   result.elements = make_elements(
       query.scene(), {.element_size = options.element_size, .max_elements = options.max_elements});
   result.counters[Counter::Elements] += result.elements.layout.element_count();
-  with_lanes(basis.lanes(), [&](auto lanes) {
-    solve_lanes<lanes()>(query, basis, options, work, result);
-  });
-  result.field.unit =
-      query.scene().unit == scene::RadianceUnit::Nit ? "lx" : "W/m^2";
+  with_lanes(basis.lanes(),
+             [&](auto lanes) { solve_lanes<lanes()>(query, basis, options, work, result); });
+  result.field.unit = query.scene().unit == scene::RadianceUnit::Nit ? "lx" : "W/m^2";
   control.report("radiosity", 1.0, result.stopped_by);
   return result;
 }

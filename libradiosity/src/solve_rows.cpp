@@ -35,7 +35,8 @@ class RowSolver {
     const int first = std::min(kFirstRound, all);
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
-    rows_ = trace_rows<N>(problem_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_, counters_);
+    rows_ =
+        trace_rows<N>(problem_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_, counters_);
     drop_buried();
     solve_indirect();
     if (first == all) return;
@@ -89,7 +90,8 @@ class RowSolver {
   SideValues<N> radiosity(const SideValues<N>& indirect) const {
     SideValues<N> b(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
-      b[i] = leaving(problem_.sides, i, source_[i] + indirect[i], source_[i ^ 1U] + indirect[i ^ 1U]);
+      b[i] =
+          leaving(problem_.sides, i, source_[i] + indirect[i], source_[i ^ 1U] + indirect[i ^ 1U]);
     return b;
   }
 
@@ -101,7 +103,8 @@ class RowSolver {
     const Gathered<N> fresh = gather(problem_, field, work_, counters_);
     const SideValues<N> b = radiosity(indirect_);
     SideValues<N> correction(problem_.side_count());
-    for (std::size_t k = 0; k < rows_.size(); ++k) correction[problem_.sides.active[k]] = pool(k, fresh, b);
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      correction[problem_.sides.active[k]] = pool(k, fresh, b);
     SideValues<N> change = correction;
     const SideValues<N> none(problem_.side_count());
     const Iteration more = solve_rows(problem_, rows_, none, correction, change, work_);

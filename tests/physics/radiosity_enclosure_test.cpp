@@ -22,8 +22,9 @@ TEST(Matrix, CubeOfConstantElements) {
   struct Case {
     double rho, emitter, opposite, side;
   };
-  for (const auto& c : {Case{0.5, 1.090909, 0.181746, 0.181836}, Case{0.8, 1.551724, 0.689551, 0.689681},
-                        Case{0.95, 4.033613, 3.193160, 3.193307}}) {
+  for (const auto& c :
+       {Case{0.5, 1.090909, 0.181746, 0.181836}, Case{0.8, 1.551724, 0.689551, 0.689681},
+        Case{0.95, 4.033613, 3.193160, 3.193307}}) {
     SCOPED_TRACE(c.rho);
     SceneMaker maker;
     const auto white = maker.material(test::diffuse(c.rho));
@@ -131,7 +132,8 @@ TEST(Rows, ThreadsDoNotMatter) {
     mirror.k_rg = 1.0;
     mirror.n = 0.2;
     mirror.kappa = 20.0;
-    maker.quad(maker.material(mirror), {1, 0.5f, 1}, {2, 0.5f, 1}, {2, 1.5f, 1.5f}, {1, 1.5f, 1.5f});
+    maker.quad(maker.material(mirror), {1, 0.5f, 1}, {2, 0.5f, 1}, {2, 1.5f, 1.5f},
+               {1, 1.5f, 1.5f});
     maker.point_light({1.4, 1, 1.8}, 5.0);
     return Solved(maker.take(), {.element_size = 0.25, .caustic_photons = 20000}).result.field;
   };

@@ -53,13 +53,15 @@ scene::Scene furnished_room() {
 // The same room by three methods that share little: sampled rows, exact factors with a dense
 // solution, and shooting.
 TEST(Solvers, Agree) {
-  const Solved rows(furnished_room(), {.element_size = 0.5, .gather_rays = 512, .direct_samples = 256});
+  const Solved rows(furnished_room(),
+                    {.element_size = 0.5, .gather_rays = 512, .direct_samples = 256});
   const Solved matrix(furnished_room(), {.solver = Solver::Matrix, .element_size = 0.5});
-  const Solved shooting(furnished_room(), {.solver = Solver::Shooting, .element_size = 0.5,
-                                           .direct_samples = 256, .tolerance = 1e-3});
+  const Solved shooting(
+      furnished_room(),
+      {.solver = Solver::Shooting, .element_size = 0.5, .direct_samples = 256, .tolerance = 1e-3});
   ASSERT_EQ(rows.count(), matrix.count());
-  double indirect = 0.0, direct = 0.0, by_rows = 0.0, by_shooting = 0.0, sampled = 0.0, mean_rows = 0.0,
-         mean_shooting = 0.0;
+  double indirect = 0.0, direct = 0.0, by_rows = 0.0, by_shooting = 0.0, sampled = 0.0,
+         mean_rows = 0.0, mean_shooting = 0.0;
   for (std::size_t e = 0; e < rows.count(); ++e)
     for (const int side : {0, 1}) {
       const double a = rows.area(e), m = matrix.indirect(e, side);
@@ -116,7 +118,8 @@ TEST(Rows, ReciprocityOfDirectAndGatheredLight) {
                   [&](std::size_t e) { return s.object(e) == object; });
   };
   const auto to_wall = received(a, 1), to_floor = received(b, 0);
-  EXPECT_NEAR(3.0 * to_wall.value, to_floor.value, 4 * std::hypot(3.0 * to_wall.error, to_floor.error));
+  EXPECT_NEAR(3.0 * to_wall.value, to_floor.value,
+              4 * std::hypot(3.0 * to_wall.error, to_floor.error));
   EXPECT_LT(to_floor.error, 0.01 * to_floor.value);
 }
 
@@ -133,8 +136,18 @@ TEST(Rows, BuriedPointsDoNotDarkenTheirElement) {
     for (const float y : {0.0f, 1.0f})
       for (const float x : {0.0f, 1.0f}) p.emplace_back(x, y, z);
   maker.object(m, p,
-               {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}},
+               {{0, 2, 3},
+                {0, 3, 1},
+                {4, 5, 7},
+                {4, 7, 6},
+                {0, 1, 5},
+                {0, 5, 4},
+                {2, 6, 7},
+                {2, 7, 3},
+                {0, 4, 6},
+                {0, 6, 2},
+                {1, 3, 7},
+                {1, 7, 5}},
                true);
   maker.point_light({0, 0, 3}, 10.0);
   const Solved s(maker.take(), {.element_size = 2.0, .direct_samples = 1024});

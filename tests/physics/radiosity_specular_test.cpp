@@ -29,8 +29,8 @@ material::Material perfect_mirror() {
 // Direct light of the mirrored lamp is the caustic part of the real one.
 TEST(Mirror, RoomWithMirrorWallEqualsDoubledRoom) {
   const double rho = 0.6;
-  const SolveOptions options{.element_size = 0.5, .gather_rays = 512, .direct_samples = 256,
-                             .caustic_photons = 2000000};
+  const SolveOptions options{
+      .element_size = 0.5, .gather_rays = 512, .direct_samples = 256, .caustic_photons = 2000000};
   SceneMaker half;
   const auto white = half.material(test::diffuse(rho));
   const auto mirror = half.material(perfect_mirror());
@@ -106,7 +106,8 @@ TEST(Pane, ClearGlassKeepsTheFluxBalance) {
   maker.point_light({1, 1, 1}, 10.0);
   const Solved s(maker.take(), {.element_size = 0.25});
   const double exact = 40 * kPi / (40 * (1 - 0.5));  // Phi / (A (1 - rho)), A = 2 (8 + 8 + 4)
-  const auto mean = s.mean([&](std::size_t e) { return s.total(e); }, [](std::size_t) { return true; });
+  const auto mean =
+      s.mean([&](std::size_t e) { return s.total(e); }, [](std::size_t) { return true; });
   EXPECT_NEAR(mean.value, exact, 4 * mean.error / 0.5);
   EXPECT_LT(mean.error, 0.01 * exact);
   const FluxBalance& f = s.result.flux;
@@ -123,7 +124,8 @@ TEST(Mirror, CorridorOfMirrorsMakesPlatesInfinite) {
   const auto plate = maker.material(test::diffuse(rho2));
   const auto mirror = maker.material(perfect_mirror());
   maker.room({0, 0, 0}, {1, 1, 1}, {lamp, plate, mirror, mirror, mirror, mirror});
-  const Solved s(maker.take(), {.element_size = 0.25, .direct_samples = 256, .caustic_photons = 400000});
+  const Solved s(maker.take(),
+                 {.element_size = 0.25, .direct_samples = 256, .caustic_photons = 400000});
   const auto on = [&](std::uint32_t object) {
     return s.mean([&](std::size_t e) { return s.total(e); },
                   [&](std::size_t e) { return s.object(e) == object; });
@@ -150,7 +152,8 @@ TEST(Translucent, SheetBetweenPlates) {
   sheet.k_tp_df = 1.0;
   sheet.body_transmittance = material::SpectralValue(tau);
   maker.quad(maker.material(sheet), {1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1});
-  const Solved s(maker.take(), {.element_size = 0.25, .direct_samples = 1024, .caustic_photons = 400000});
+  const Solved s(maker.take(),
+                 {.element_size = 0.25, .direct_samples = 1024, .caustic_photons = 400000});
 
   // E_b = r2 (rho E_b + tau E_a) -> E_b = k E_a.
   const double k = r2 * tau / (1 - r2 * rho);

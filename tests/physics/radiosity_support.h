@@ -28,7 +28,8 @@ struct Solved {
   [[nodiscard]] Vec3f centre(std::size_t e) const {
     Vec3f sum = Vec3f::Zero();
     float weight = 0.0f;
-    for (std::size_t p = result.elements.first_piece[e]; p < result.elements.first_piece[e + 1]; ++p) {
+    for (std::size_t p = result.elements.first_piece[e]; p < result.elements.first_piece[e + 1];
+         ++p) {
       const auto& c = result.elements.pieces[p].corners;
       for (std::size_t k = 1; k + 1 < c.size(); ++k) {
         const float area = (c[k] - c[0]).cross(c[k + 1] - c[0]).norm();

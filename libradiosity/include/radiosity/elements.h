@@ -10,9 +10,9 @@
 namespace atrium::radiosity {
 
 struct ElementOptions {
-  double element_size = 0.0;           ///< [m]; 0: from max_elements
+  double element_size = 0.0;  ///< [m]; 0: from max_elements
   std::uint32_t max_elements = 60000;
-  double normal_cone_deg = 10.0;       ///< a facet's normals lie within this angle of its mean
+  double normal_cone_deg = 10.0;  ///< a facet's normals lie within this angle of its mean
 };
 
 /// One convex piece of an element: the part of one triangle that lies in one grid cell.
@@ -36,7 +36,8 @@ struct Elements {
 [[nodiscard]] Elements make_elements(const scene::Scene& scene, const ElementOptions& options = {});
 
 /// The solution as polygons with the arrays of the mesh files (irradiance_direct, ..., radiosity).
-[[nodiscard]] scene::PolygonMesh to_polygon_mesh(const scene::Scene& scene, const Elements& elements,
+[[nodiscard]] scene::PolygonMesh to_polygon_mesh(const scene::Scene& scene,
+                                                 const Elements& elements,
                                                  const scene::SurfaceField& field,
                                                  const material::SpectralBasis& basis);
 

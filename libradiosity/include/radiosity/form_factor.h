@@ -6,11 +6,10 @@
 
 namespace atrium::radiosity {
 
-/// Share of the flux leaving a small Lambertian surface at p that arrives at a planar convex polygon
-/// if nothing is in between. Exact; both faces of the polygon count alike. The part of the polygon
-/// below the receiver's horizon is cut off. 0 for fewer than 3 corners or p in the polygon's plane.
-/// \param normal  unit.
-/// Source: Lambert 1760; docs/radiosity.md, Eq. 1.
+/// Share of the flux leaving a small Lambertian surface at p that arrives at a planar convex
+/// polygon if nothing is in between. Exact; both faces of the polygon count alike. The part of the
+/// polygon below the receiver's horizon is cut off. 0 for fewer than 3 corners or p in the
+/// polygon's plane. \param normal  unit. Source: Lambert 1760; docs/radiosity.md, Eq. 1.
 [[nodiscard]] double point_to_polygon(const Vec3d& p, const Vec3d& normal,
                                       std::span<const Vec3d> polygon);
 

@@ -24,39 +24,41 @@ struct SolveOptions {
   double element_size = 0.0;           ///< [m] edge of an element; 0: from max_elements
   std::uint32_t max_elements = 60000;  ///< about; large scenes get larger elements
   int row_rays = 64;                   ///< hemisphere rays per element side kept as a row
-  int gather_rays = 128;               ///< further rays per element side, streamed against the solution
-  int direct_samples = 16;             ///< light samples per element side
-  std::uint64_t caustic_photons = 1000000;  ///< only traced where the scene has mirrors, solids, lobes
+  int gather_rays = 128;    ///< further rays per element side, streamed against the solution
+  int direct_samples = 16;  ///< light samples per element side
+  std::uint64_t caustic_photons =
+      1000000;  ///< only traced where the scene has mirrors, solids, lobes
   int max_iterations = 200;
-  double tolerance = 1e-4;             ///< of the iteration, relative to the largest radiosity
-  double time_limit = 0.0;             ///< [s]; 0: none
+  double tolerance = 1e-4;  ///< of the iteration, relative to the largest radiosity
+  double time_limit = 0.0;  ///< [s]; 0: none
   std::uint64_t seed = 1;
   bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
 };
 
 /// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + unshot within their errors.
 struct FluxBalance {
-  double emitted = 0.0;    ///< by the lights
-  double absorbed = 0.0;   ///< counted at the surfaces
-  double escaped = 0.0;    ///< counted at rays that leave the scene
+  double emitted = 0.0;   ///< by the lights
+  double absorbed = 0.0;  ///< counted at the surfaces
+  double escaped = 0.0;   ///< counted at rays that leave the scene
   double standard_error = 0.0;
 };
 
 struct SolveResult {
-  Elements elements;             ///< geometry of the elements (layout without values)
+  Elements elements;  ///< geometry of the elements (layout without values)
   scene::SurfaceField field;
   scene::Counters counters;
   FluxBalance flux;
-  double residual = 0.0;        ///< last change of radiosity, relative to its maximum
+  double residual = 0.0;  ///< last change of radiosity, relative to its maximum
   int iterations = 0;
   double error_estimate = 0.0;  ///< area-weighted relative standard error of indirect irradiance
-  bool complete = true;         ///< false: stopped by time or request; the field is usable all the same
-  std::string stopped_by;       ///< "tolerance", "iterations", "time limit", "interrupt"
+  bool complete = true;    ///< false: stopped by time or request; the field is usable all the same
+  std::string stopped_by;  ///< "tolerance", "iterations", "time limit", "interrupt"
 };
 
 /// Solves diffuse inter-reflection, also through panes, mirrors, solids and rough lobes.
 /// \throws Error  if a closed enclosure reflects everything (no finite solution).
 [[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
-                                const SolveOptions& options = {}, const scene::Control& control = {});
+                                const SolveOptions& options = {},
+                                const scene::Control& control = {});
 
 }  // namespace atrium::radiosity

@@ -90,7 +90,8 @@ class SceneMaker {
     for (int level = 0; level < levels; ++level) {
       std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
       const auto mid = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [it, fresh] = middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(p.size()));
+        const auto [it, fresh] =
+            middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(p.size()));
         if (fresh) p.push_back((p[a] + p[b]).normalized());
         return it->second;
       };

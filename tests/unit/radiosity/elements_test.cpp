@@ -126,7 +126,8 @@ TEST(Elements, DegenerateInputIsSurvived) {
 
 TEST(Elements, LongSliverFillsCellsAlongItsWay) {
   SceneMaker maker;
-  maker.object(maker.material(test::diffuse(0.5)), {{0, 0, 0}, {100, 0, 0}, {100, 0.001f, 0}}, {{0, 1, 2}});
+  maker.object(maker.material(test::diffuse(0.5)), {{0, 0, 0}, {100, 0, 0}, {100, 0.001f, 0}},
+               {{0, 1, 2}});
   const Scene scene = maker.take();
   const Elements e = make_elements(scene, {.element_size = 1.0});
   EXPECT_EQ(e.layout.element_count(), 100U);

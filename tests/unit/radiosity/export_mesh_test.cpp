@@ -10,7 +10,8 @@ namespace {
 
 const scene::PolygonMesh::Array* find(const std::vector<scene::PolygonMesh::Array>& arrays,
                                       const std::string& name) {
-  const auto it = std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.name == name; });
+  const auto it =
+      std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.name == name; });
   return it == arrays.end() ? nullptr : &*it;
 }
 
@@ -27,16 +28,17 @@ TEST(ToPolygonMesh, HoldsTheDocumentedArraysInWorldCoordinates) {
 
   ASSERT_EQ(mesh.polygon_sizes.size(), result.elements.pieces.size());
   for (const Vec3d& p : mesh.points) EXPECT_TRUE(p.x() > 999.9 && p.x() < 1002.1);
-  for (const char* name : {"irradiance_direct", "irradiance_caustic", "irradiance_indirect", "irradiance",
-                           "irradiance_back", "radiosity", "reflectance", "emission"}) {
+  for (const char* name :
+       {"irradiance_direct", "irradiance_caustic", "irradiance_indirect", "irradiance",
+        "irradiance_back", "radiosity", "reflectance", "emission"}) {
     SCOPED_TRACE(name);
     const auto* a = find(mesh.cell_arrays, name);
     ASSERT_NE(a, nullptr);
     EXPECT_EQ(a->components, 3);
     EXPECT_EQ(a->values.size(), 3 * mesh.polygon_sizes.size());
   }
-  for (const char* name : {"stderr", "illuminance_lux", "element_id", "level", "material_id", "object_id",
-                           "front_valid"}) {
+  for (const char* name : {"stderr", "illuminance_lux", "element_id", "level", "material_id",
+                           "object_id", "front_valid"}) {
     SCOPED_TRACE(name);
     const auto* a = find(mesh.cell_arrays, name);
     ASSERT_NE(a, nullptr);
@@ -51,7 +53,8 @@ TEST(ToPolygonMesh, HoldsTheDocumentedArraysInWorldCoordinates) {
   const auto& b = find(mesh.cell_arrays, "radiosity")->values;
   const auto& lux = find(mesh.cell_arrays, "illuminance_lux")->values;
   for (std::size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(b[i], 0.5f * e[i], 1e-5f * e[i]);
-  for (std::size_t i = 0; i < lux.size(); ++i) EXPECT_NEAR(lux[i], 179.0f * e[3 * i], 1e-3f * lux[i]);
+  for (std::size_t i = 0; i < lux.size(); ++i)
+    EXPECT_NEAR(lux[i], 179.0f * e[3 * i], 1e-3f * lux[i]);
   EXPECT_EQ(mesh.field_data.at("unit"), "W/m^2");
 }
 

@@ -32,9 +32,9 @@ TEST(FormFactor, PerpendicularRectanglesWithCommonEdge) {
   struct Case {
     double h, w, f;
   };
-  for (const auto& [h, w, f] : {Case{1, 1, 0.200043776}, Case{1, 2, 0.116426301},
-                                Case{2, 1, 0.232852603}, Case{0.5, 1, 0.146186679},
-                                Case{1, 0.1, 0.432513694}}) {
+  for (const auto& [h, w, f] :
+       {Case{1, 1, 0.200043776}, Case{1, 2, 0.116426301}, Case{2, 1, 0.232852603},
+        Case{0.5, 1, 0.146186679}, Case{1, 0.1, 0.432513694}}) {
     SCOPED_TRACE(testing::Message() << h << " x " << w);
     EXPECT_NEAR(perpendicular_rectangles(w, h, 1), f, 1e-9);
     const Polygon floor{{0, 0, 0}, {w, 0, 0}, {w, 1, 0}, {0, 1, 0}};

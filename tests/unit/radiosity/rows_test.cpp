@@ -22,8 +22,8 @@ struct Box {
   Work work{control, 0.0};
   scene::Counters counters;
   Rows<1> rows() {
-    return trace_rows<1>(problem, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1), 0, 32,
-                         work, counters);
+    return trace_rows<1>(problem, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1), 0,
+                         32, work, counters);
   }
 };
 
@@ -89,7 +89,8 @@ TEST(Rows, RoundsAddUp) {
   Box box{closed_box(0.5)};
   const std::vector<std::uint8_t> all(box.problem.sides.active.size(), 1);
   Rows<1> half = trace_rows<1>(box.problem, {}, all, 0, 16, box.work, box.counters);
-  const Rows<1> both = trace_rows<1>(box.problem, std::move(half), all, 16, 32, box.work, box.counters);
+  const Rows<1> both =
+      trace_rows<1>(box.problem, std::move(half), all, 16, 32, box.work, box.counters);
   const Rows<1> once = box.rows();
   ASSERT_EQ(both.entries.size(), once.entries.size());
   for (std::size_t e = 0; e < once.entries.size(); ++e) {
@@ -115,7 +116,8 @@ TEST(Problem, ClosedBodyHasOneSideUnlessLitInside) {
 // Points on an element are uniform by area: their mean is the centroid.
 TEST(ElementPoints, MeanIsCentroid) {
   SceneMaker maker;
-  maker.object(maker.material(test::diffuse(0.5)), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3f, 0.6f, 0}},
+  maker.object(maker.material(test::diffuse(0.5)),
+               {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3f, 0.6f, 0}},
                {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
   const scene::Scene scene = maker.take();
   const Elements e = make_elements(scene, {.element_size = 1.0});
