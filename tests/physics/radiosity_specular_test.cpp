@@ -153,7 +153,7 @@ TEST(Translucent, SheetBetweenPlates) {
   sheet.body_transmittance = material::SpectralValue(tau);
   maker.quad(maker.material(sheet), {1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1});
   const Solved s(maker.take(),
-                 {.element_size = 0.25, .direct_samples = 1024, .caustic_photons = 400000});
+                 {.element_size = 0.25, .direct_samples = 1024, .caustic_photons = 1000000});
 
   // E_b = r2 (rho E_b + tau E_a) -> E_b = k E_a.
   const double k = r2 * tau / (1 - r2 * rho);
