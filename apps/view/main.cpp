@@ -1,6 +1,7 @@
 // Shows a radiosity mesh (.vtp, .vtu) coloured by one of its arrays: in a window, or as a picture
 // without one.
 #include <vtkActor.h>
+#include <vtkCamera.h>
 #include <vtkCellData.h>
 #include <vtkDataSet.h>
 #include <vtkDataSetMapper.h>
@@ -203,6 +204,15 @@ void save_png(vtkRenderWindow& window, const std::string& file) {
   if (ec) throw std::runtime_error(file + ": cannot be written: " + ec.message());
 }
 
+/// From the front, the right and above, y up, everything in view.
+void look_from_above(vtkRenderer& renderer) {
+  vtkCamera* camera = renderer.GetActiveCamera();
+  camera->SetFocalPoint(0.0, 0.0, 0.0);
+  camera->SetPosition(0.5, 0.8, 1.0);
+  camera->SetViewUp(0.0, 1.0, 0.0);
+  renderer.ResetCamera();
+}
+
 /// VTK of Debian draws through X only and aborts the process without a display.
 void require_display() {
   const char* display = std::getenv("DISPLAY");
@@ -255,7 +265,7 @@ void show(const Options& o) {
   window->SetSize(o.width, o.height);
   window->SetOffScreenRendering(o.screenshot.empty() ? 0 : 1);
   window->AddRenderer(renderer);
-  renderer->ResetCamera();
+  look_from_above(*renderer);
   window->Render();
   if (!o.screenshot.empty()) {
     save_png(*window, o.screenshot);
