@@ -56,8 +56,9 @@ class PhotonTracer {
 
 template <int N>
 void add_deposits(const Problem<N>& problem, const Batch<N>& batch, double photons,
-                  Photons<N>& result) {
+                  std::vector<std::uint32_t>& arrived, Photons<N>& result) {
   for (const Deposit<N>& d : batch.deposits) {
+    ++arrived[d.side];
     const float scale =
         static_cast<float>(1.0 / (photons * static_cast<double>(problem.area(d.side))));
     Irradiance<N>& e = result.caustic.irradiance;
@@ -94,12 +95,14 @@ Photons<N> trace_photons(const Problem<N>& problem, Work& work, Counters& counte
   if (photons == 0) return result;
   const double n = static_cast<double>(photons);
   double squares = 0.0;
+  std::vector<std::uint32_t> arrived(problem.side_count(), 0);
   for (const Batch<N>& batch : batches) {
-    add_deposits(problem, batch, n, result);
+    add_deposits(problem, batch, n, arrived, result);
     result.escaped += batch.escaped / n;
     result.absorbed += batch.absorbed / n;
     squares += batch.squares / n;
   }
+  if (problem.specular) smooth_photons(problem, arrived, result.caustic);
   const double mean = result.escaped + result.absorbed;
   result.variance = std::max(0.0, squares - mean * mean) / n;
   return result;

@@ -52,6 +52,14 @@ template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, Work& work,
                                        scene::Counters& counters);
 
+/// Density estimation: where few photons arrived, an element takes the mean over its nearest
+/// neighbours of the same facing whose counts could come from the same density, until 64 photons
+/// are together or the kernel is 4 elements wide. Bright, sharp spots stay as they are.
+/// \param photons  that arrived, by side.
+template <int N>
+void smooth_photons(const Problem<N>& problem, const std::vector<std::uint32_t>& photons,
+                    Estimate<N>& caustic);
+
 /// One bounce against a known field with fresh rays. `rays` is 0 for sides that were skipped.
 template <int N>
 struct Gathered {
