@@ -101,9 +101,8 @@ TEST(Rows, OpenSceneBalances) {
   EXPECT_GT(f.escaped, 0.3 * f.emitted);
 }
 
-// Rows find A_i F_ij and A_j F_ji on their own: light from plate 1 to plate 2 and back exchange
-// alike, E_2 A_2 / (M_1 A_1) of one scene equals the other with the lamp on plate 2.
-TEST(Rows, ReciprocityOfDirectAndGatheredLight) {
+// A_1 F_12 = A_2 F_21: what plate 1 sends to plate 2 is what comes back with the lamp on plate 2.
+TEST(Rows, ReciprocityOfDirectLight) {
   const auto solved = [](bool first) {
     SceneMaker maker;
     const auto lamp = maker.material(test::emitter(1.0 / kPi, 0.5));

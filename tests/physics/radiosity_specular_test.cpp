@@ -64,9 +64,7 @@ TEST(Mirror, RoomWithMirrorWallEqualsDoubledRoom) {
   EXPECT_LT(std::abs(difference), 0.005 * sum);
 }
 
-// A pane between two half-rooms whose side walls are perfect mirrors: infinite parallel planes at
-// both ends, so E1 = M + ... is a 2 x 2 system with the pane's diffuse (R, T), here for a pane of
-// index 1 that absorbs nothing and reflects nothing: the room without pane, exactly.
+// A pane of index 1 without absorption reflects nothing and passes all: the room without it.
 TEST(Pane, OfIndexOneIsInvisible) {
   const auto solved = [](bool with_pane) {
     SceneMaker maker;
