@@ -47,7 +47,7 @@ struct SolveSettings {
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
   std::uint64_t seed = 1;
-  bool paper_weights = false;  ///< render --mode paper
+  bool paper_weights = false;  ///< --mode paper
 };
 
 struct RenderCommand {

@@ -126,6 +126,9 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
   app.add_option("--solver", t.solver, "radiosity: rows, shooting or matrix")
       ->check(CLI::IsMember({"rows", "shooting", "matrix"}))
       ->capture_default_str();
+  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
+      ->check(CLI::IsMember({"radiometric", "paper"}))
+      ->capture_default_str();
   app.add_option("--time-limit", o.time_limit, "stop computing after this time [s]; 0: none")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
@@ -162,9 +165,6 @@ void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
                  "inter-reflection in the picture: mesh (interpolated), gather (hemisphere rays), "
                  "auto: mesh for drafts")
       ->check(CLI::IsMember({"auto", "mesh", "gather"}))
-      ->capture_default_str();
-  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
-      ->check(CLI::IsMember({"radiometric", "paper"}))
       ->capture_default_str();
   app.add_flag("--components", o.components, "layers C1..C6 in .exr");
   app.add_option("--solution", o.solution, "use this radiosity solution instead of solving")
@@ -224,7 +224,6 @@ RenderCommand finish(RenderCommand o, const Texts& t, const CLI::App& app) {
   o.method = choose<Method>(
       t.method, {{"hybrid", Method::Hybrid}, {"path", Method::Path}, {"direct", Method::Direct}});
   o.mode = choose<Mode>(t.mode, {{"radiometric", Mode::Radiometric}, {"paper", Mode::Paper}});
-  o.solve.paper_weights = o.mode == Mode::Paper;
   o.indirect = choose<IndirectChoice>(t.indirect, {{"auto", IndirectChoice::Auto},
                                                    {"mesh", IndirectChoice::Mesh},
                                                    {"gather", IndirectChoice::Gather}});
@@ -233,6 +232,7 @@ RenderCommand finish(RenderCommand o, const Texts& t, const CLI::App& app) {
 }
 
 void finish(SolveSettings& o, const Texts& t) {
+  o.paper_weights = t.mode == "paper";
   o.quality = choose<Quality>(
       t.quality, {{"draft", Quality::Draft}, {"normal", Quality::Normal}, {"high", Quality::High}});
   o.solver = choose<SolverChoice>(t.solver, {{"rows", SolverChoice::Rows},

@@ -17,6 +17,10 @@ bool radiosity_needed(const scene::Features& features, std::string& why) {
   return why.empty();
 }
 
+std::string describe_lanes(const LoadedScene& loaded, const SolveSettings& settings) {
+  return loaded.basis.describe() + (settings.paper_weights ? ", paper mode" : "");
+}
+
 std::string describe(const SolveSettings& s) {
   const char* solver = s.solver == SolverChoice::Rows       ? "rows"
                        : s.solver == SolverChoice::Shooting ? "shooting"
@@ -25,7 +29,7 @@ std::string describe(const SolveSettings& s) {
                         : s.quality == Quality::Normal ? "normal"
                                                        : "high";
   return std::string("solver ") + solver + ", quality " + quality + ", seed " +
-         std::to_string(s.seed) + (s.paper_weights ? ", paper weights" : "");
+         std::to_string(s.seed);
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY

@@ -28,6 +28,9 @@ struct RadiosityRun {
                                          const SolveSettings& settings, double time_limit,
                                          bool want_mesh);
 
+/// What the numbers of a solution mean; a solution serves only runs that say the same.
+[[nodiscard]] std::string describe_lanes(const LoadedScene& loaded, const SolveSettings& settings);
+
 /// For people and for files: what the solution was made with.
 [[nodiscard]] std::string describe(const SolveSettings& settings);
 

@@ -96,7 +96,7 @@ double time_share(const Session& session, const RenderCommand& c, double share) 
 
 scene::SurfaceField load_solution(const RenderCommand& c, const LoadedScene& loaded) {
   scene::Solution solution = scene::read_solution(c.solution);
-  scene::check_solution(solution, *loaded.scene, loaded.basis.describe(), c.solution);
+  scene::check_solution(solution, *loaded.scene, describe_lanes(loaded, c.solve), c.solution);
   return std::move(solution.field);
 }
 
@@ -136,7 +136,7 @@ void save_solution(Session& session, const RenderCommand& c, const LoadedScene& 
   session.clock.enter("write");
   scene::write_solution({.field = field,
                          .scene_hash = scene::hash_scene(*loaded.scene),
-                         .basis = loaded.basis.describe(),
+                         .basis = describe_lanes(loaded, c.solve),
                          .options = describe(c.solve)},
                         c.save_solution);
   session.progress.note("wrote " + c.save_solution);

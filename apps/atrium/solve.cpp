@@ -55,7 +55,7 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
     if (is_solution(file)) {
       scene::write_solution({.field = run.field,
                              .scene_hash = scene::hash_scene(*loaded.scene),
-                             .basis = loaded.basis.describe(),
+                             .basis = describe_lanes(loaded, c.solve),
                              .options = describe(c.solve)},
                             file);
     } else {

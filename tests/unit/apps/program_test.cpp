@@ -233,6 +233,8 @@ TEST_F(AtriumRun, SolutionsAreReusedAndCheckedAgainstTheScene) {
   // Another floor, a cut file.
   folder.write("b.obj", std::string(kLitFloor) + "v 3 0 0\nf 1 2 9\n");
   expect_error(run(folder, "render b.obj -o c.pfm --solution a.atrium" + small), 2, "a.atrium");
+  expect_error(run(folder, "render a.obj -o c.pfm --mode paper --solution a.atrium" + small), 2,
+               "paper mode");
   folder.write("cut.atrium", read_file(folder / "a.atrium").substr(0, 1000));
   expect_error(run(folder, "render a.obj -o c.pfm --solution cut.atrium" + small), 2, "cut.atrium");
   EXPECT_FALSE(std::filesystem::exists(folder / "c.pfm"));
