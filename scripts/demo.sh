@@ -8,15 +8,7 @@ scripts/install_deps.sh build
 cmake --preset release >/dev/null
 cmake --build --preset release
 
-scene=""
-for candidate in office/office glass_and_mirror/glass_and_mirror cornell/cornell; do
-  if [ -f "scenes/$candidate.yaml" ]; then
-    scene="scenes/$candidate.yaml"
-    break
-  fi
-done
-[ -n "$scene" ] || { echo "demo.sh: no scene found in scenes/" >&2; exit 1; }
-
+scene=scenes/office/office.yaml
 name=$(basename "$scene" .yaml)
 out=build/demo
 mkdir -p "$out"
