@@ -63,6 +63,7 @@ struct RenderCommand {
   IndirectChoice indirect = IndirectChoice::Auto;
   int samples = 0;  ///< 0: from the quality
   bool components = false;
+  bool no_filter = false;
   trace::ToneMapOptions tone;
   std::string solution;  ///< read
   std::string save_solution;

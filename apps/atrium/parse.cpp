@@ -167,6 +167,7 @@ void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
       ->check(CLI::IsMember({"auto", "mesh", "gather"}))
       ->capture_default_str();
   app.add_flag("--components", o.components, "layers C1..C6 in .exr");
+  app.add_flag("--no-filter", o.no_filter, "do not share samples between neighbouring pixels");
   app.add_option("--solution", o.solution, "use this radiosity solution instead of solving")
       ->type_name("FILE.atrium");
   app.add_option("--save-solution", o.save_solution, "keep the radiosity solution")
@@ -195,6 +196,9 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   }
   if (o.method == trace::Method::Path && o.mode == trace::Mode::Paper) {
     throw Error("--mode paper: --method path needs energy-conserving materials (radiometric)");
+  }
+  if (o.mode == trace::Mode::Paper || o.method == trace::Method::Path) {
+    refuse("--no-filter", "--method path and --mode paper never share samples");
   }
   if (o.mode == trace::Mode::Paper) {
     refuse("--indirect", "paper mode reads its ambient light from the mesh");

@@ -161,6 +161,7 @@ trace::RenderOptions render_options(const Session& session, const RenderCommand&
   o.time_limit = time_limit;
   o.seed = c.solve.seed;
   o.components = c.components;
+  o.share_samples = !c.no_filter;
   return o;
 }
 

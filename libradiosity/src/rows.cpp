@@ -189,6 +189,16 @@ class Sweeper {
     return m;
   }
 
+  /// Growth of the diffuse flux since the last call, relative to it.
+  double flux_growth() {
+    double flux = 0.0;
+    for (const SideIndex i : problem_.sides.active)
+      flux += static_cast<double>(radiosity_[i].mean()) * static_cast<double>(problem_.area(i));
+    const double growth = flux > 0.0 ? (flux - flux_) / flux : 0.0;
+    flux_ = flux;
+    return growth;
+  }
+
  private:
   static constexpr std::size_t kGroups = 8, kBlock = 64;
 
@@ -249,6 +259,7 @@ class Sweeper {
   SideValues<N>& result_;
   SideValues<N> radiosity_;
   SideValues<N> fresh_;
+  double flux_ = 0.0;
 };
 
 /// Over 50 sweeps even a reflectance of 0.9999 takes half a per cent off the changes.
@@ -267,6 +278,7 @@ Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideV
   Sweeper<N> sweeper(problem, rows, source, constant, result);
   float before = 0.0f;
   std::vector<double> changes;
+  bool trapped = false;
   while (state.iterations < problem.options.max_iterations && !work.stopped()) {
     const float change = sweeper.sweep();
     const float largest = sweeper.largest();
@@ -286,7 +298,20 @@ Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideV
       break;
     }
     changes.push_back(static_cast<double>(change));
-    if (does_not_decay(changes))
+    if (!does_not_decay(changes)) continue;
+    // Light is trapped. In a crevice whose few rays all met white walls it is no more than noise of
+    // the rows, and the rest of the solution stands; in an enclosure there is none.
+    if (!trapped) {  // the first look has nothing to compare with
+      trapped = true;
+      (void)sweeper.flux_growth();
+      continue;
+    }
+    const double growth = sweeper.flux_growth();
+    if (growth <= problem.options.tolerance) {
+      state.converged = true;
+      break;
+    }
+    if (growth > 1e-3)
       throw Error(
           "radiosity: a closed enclosure reflects all light (reflectance 1), there is no finite "
           "solution");

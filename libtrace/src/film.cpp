@@ -1,7 +1,10 @@
 #include "film.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+
+#include "share.h"
 
 namespace atrium::trace {
 namespace {
@@ -10,10 +13,22 @@ void move_mean(Rgb& mean, const Rgb& value, float n) { mean += (value - mean) / 
 
 }  // namespace
 
-Film::Film(int width, int height, bool components) : width_(width), height_(height) {
+Film::Film(int width, int height, bool components, bool shares) : width_(width), height_(height) {
   const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   pixels_.resize(n);
   if (components) terms_.resize(n);
+  if (shares) bodies_.resize(n);
+}
+
+void Film::add_body(Body& body, const std::array<Rgb, 2>& radiance, const Rgb& albedo,
+                    const Vec3f& position, float n) {
+  for (std::size_t part = 0; part < 2; ++part) {
+    const float before = luminance(radiance[part]) - luminance(body.radiance[part]);
+    move_mean(body.radiance[part], radiance[part], n);
+    body.m2[part] += before * (luminance(radiance[part]) - luminance(body.radiance[part]));
+  }
+  move_mean(body.albedo, albedo, n);
+  body.position += (position - body.position) / n;
 }
 
 template <int N>
@@ -40,6 +55,9 @@ void Film::add(int x, int y, const PixelSample<N>& sample, const material::Spect
   if (!terms_.empty())
     for (std::size_t t = 0; t < kTerms; ++t)
       move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
+  if (!bodies_.empty())
+    add_body(bodies_[i], {basis.to_rgb(sample.body_direct), basis.to_rgb(sample.body_indirect)},
+             basis.to_rgb(sample.body_albedo), sample.position, n);
   move_mean(p.albedo, basis.to_rgb(sample.albedo), n);
   move_mean(p.irradiance, basis.to_rgb(sample.irradiance), n);
   p.normal += (sample.normal - p.normal) / n;
@@ -57,6 +75,51 @@ template void Film::add<4>(int, int, const PixelSample<4>&, const material::Spec
                            scene::Counters&);
 template void Film::add<8>(int, int, const PixelSample<8>&, const material::SpectralBasis&,
                            scene::Counters&);
+
+void Film::share() {
+  if (bodies_.empty()) return;
+  ShareGuides guides{width_, height_, {}, {}, {}};
+  std::array<Illumination, 2> parts;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    const Body& body = bodies_[i];
+    // A pixel that only partly shows a body keeps its own samples.
+    const bool usable = p.count > 1 && p.hits == p.count && body.albedo.min() > 1e-4f;
+    guides.position.push_back(body.position);
+    guides.normal.push_back(p.normal);
+    guides.depth.push_back(usable ? p.depth : 0.0f);
+    const float y = luminance(body.albedo);
+    const float n = static_cast<float>(p.count);
+    for (std::size_t k = 0; k < 2; ++k) {
+      parts[k].value.push_back(
+          usable ? Rgb::generate([&](int c) { return body.radiance[k][c] / body.albedo[c]; })
+                 : Rgb::zero());
+      parts[k].variance.push_back(usable ? body.m2[k] / (n * (n - 1.0f) * y * y) : 0.0f);
+    }
+  }
+  const std::array<std::vector<float>, 2> before{parts[0].variance, parts[1].variance};
+  for (Illumination& part : parts) part = share_illumination(guides, std::move(part));
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (!(guides.depth[i] > 0.0f)) continue;
+    Pixel& p = pixels_[i];
+    const Rgb& albedo = bodies_[i].albedo;
+    const double y2 = std::pow(static_cast<double>(luminance(albedo)), 2.0);
+    double less = 0.0, all = 0.0;  // variance of Y, taken away by sharing and before it
+    const double n = p.count;
+    for (std::size_t c = 0; c < 3; ++c) all += p.m2[c] / (n * (n - 1.0)) / 3.0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Rgb change = parts[k].value[i] * albedo - bodies_[i].radiance[k];
+      for (std::size_t c = 0; c < 3; ++c)
+        p.mean[c] += static_cast<double>(change[static_cast<int>(c)]);
+      if (!terms_.empty())
+        terms_[i][static_cast<std::size_t>(k == 0 ? Term::DirectReflection
+                                                  : Term::IndirectReflection)] += change;
+      less += y2 * static_cast<double>(before[k][i] - parts[k].variance[i]);
+    }
+    const double kept = all > 0.0 ? std::clamp(1.0 - less / all, 0.01, 1.0) : 1.0;
+    for (double& m2 : p.m2) m2 *= kept;
+  }
+}
 
 scene::Image Film::image() const {
   static constexpr const char* kRgb[3] = {"R", "G", "B"};

@@ -13,12 +13,15 @@ namespace atrium::trace {
 /// Running means of all layers; every pixel belongs to one task at a time.
 class Film {
  public:
-  Film(int width, int height, bool components);
+  /// \param shares  keeps what share() needs.
+  Film(int width, int height, bool components, bool shares);
 
   template <int N>
   void add(int x, int y, const PixelSample<N>& sample, const material::SpectralBasis& basis,
            scene::Counters& counters);
 
+  /// Shares the samples of the first surfaces' body light between pixels; once, at the end.
+  void share();
   [[nodiscard]] scene::Image image() const;
   /// RMS of the standard error of Y over the RMS-free mean of Y.
   [[nodiscard]] double error_estimate() const;
@@ -33,8 +36,19 @@ class Film {
     std::uint32_t count = 0;
     std::uint32_t hits = 0;
   };
+  /// Light from a surface's body, by part (direct, indirect), and what it needs to be shared.
+  struct Body {
+    std::array<Rgb, 2> radiance;
+    std::array<float, 2> m2{};  // of luminance
+    Rgb albedo;
+    Vec3f position = Vec3f::Zero();
+  };
+  void add_body(Body& body, const std::array<Rgb, 2>& radiance, const Rgb& albedo,
+                const Vec3f& position, float n);
+
   int width_, height_;
   std::vector<Pixel> pixels_;
+  std::vector<Body> bodies_;                    // empty if nothing is shared
   std::vector<std::array<Rgb, kTerms>> terms_;  // empty without components
 };
 

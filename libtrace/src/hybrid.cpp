@@ -62,6 +62,7 @@ FieldRadiance<N> field_radiance(const View<N>& view, const scene::Interaction<N>
 template <int N>
 struct DirectLight {
   Spectrum<N> reflected, transmitted;
+  Spectrum<N> body;  ///< share of `reflected` by the body
 };
 enum class Lobes { Counted, LeftToCaustics };
 template <int N>
@@ -84,10 +85,12 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
     if (!f.lobe.is_zero())
       f.lobe *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi, kSpecularEvents));
   }
-  const Spectrum<N> contribution = f.sum() * light->radiance * (std::abs(wi.z()) / light->pdf);
-  if (contribution.is_zero()) return d;
-  (wi.z() > 0.0f ? d.reflected : d.transmitted) =
-      contribution * view.shading.visibility(surface.point, *light, counters, Counter::RaysShadow);
+  const Spectrum<N> unoccluded = light->radiance * (std::abs(wi.z()) / light->pdf);
+  if ((f.sum() * unoccluded).is_zero()) return d;
+  const Spectrum<N> arriving =
+      unoccluded * view.shading.visibility(surface.point, *light, counters, Counter::RaysShadow);
+  (wi.z() > 0.0f ? d.reflected : d.transmitted) = f.sum() * arriving;
+  if (wi.z() > 0.0f) d.body = f.diffuse * arriving;
   return d;
 }
 
@@ -230,14 +233,24 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
         direct_light(view, surface, wo, gathers, Lobes::Counted, sampler, counters);
     add(depth, Term::DirectReflection, direct.reflected);
     add(depth, Term::DirectTransmission, direct.transmitted);
+    if (depth == 0) {
+      out.position = hit->position;
+      out.body_albedo = surface.bsdf.diffuse_reflectance(wo);
+      out.body_direct = direct.body;
+    }
     if (has_field && surface.bsdf.has(kDiffuseEvents)) {
       const FieldRadiance<N> r = field_radiance(view, surface, wo, {false, true, !gathers});
       add(depth, Term::IndirectReflection, r.reflected);
       add(depth, Term::IndirectTransmission, r.transmitted);
+      if (depth == 0) out.body_indirect = r.reflected;
       if (gathers) {
         const Gathered<N> g = gather(view, surface, wo, sampler, counters);
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);
+        if (depth == 0 && g.reflected) {
+          out.body_direct += g.straight;
+          out.body_indirect += g.indirect;
+        }
       }
     }
     if (!specular_step(surface, wo, depth, ray, beta, vertex, last, sampler)) break;

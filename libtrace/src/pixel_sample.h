@@ -30,6 +30,11 @@ struct PixelSample {
   Vec3f normal = Vec3f::Zero();
   float depth = 0.0f;  ///< [m] along the ray; 0: nothing hit
 
+  // The share of C1 and C2 that the first surface's body reflects, for sharing between pixels.
+  Spectrum<N> body_direct, body_indirect;
+  Spectrum<N> body_albedo;  ///< towards the viewer
+  Vec3f position = Vec3f::Zero();
+
   Spectrum<N>& operator[](Term t) { return term[static_cast<std::size_t>(t)]; }
   [[nodiscard]] Spectrum<N> sum() const {
     Spectrum<N> s;

@@ -89,7 +89,9 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
   const scene::Shading<N> shading(query, basis);
   const View<N> view{shading, field, options};
   const PixelWindow window = pixel_window(options);
-  Film film(window.width, window.height, options.components);
+  const bool shares =
+      options.share_samples && options.method != Method::Path && options.mode == Mode::Radiometric;
+  Film film(window.width, window.height, options.components, shares);
   const std::vector<Tile> tiles = tiles_of(window.width, window.height);
   std::vector<scene::Counters> counters(tiles.size());
 
@@ -119,6 +121,7 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
     if (!stopped) result.samples_done = last;
   }
   for (const scene::Counters& c : counters) result.counters += c;
+  film.share();
   result.image = film.image();
   result.error_estimate = film.error_estimate();
   return result;

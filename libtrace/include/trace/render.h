@@ -40,7 +40,10 @@ struct RenderOptions {
   double time_limit = 0.0;  ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
   int max_specular_depth = 64;  ///< mirror and glass events of one path (hybrid, paper)
-  bool components = false;      ///< layers C1..C6 and emission
+  /// Average body light over neighbouring pixels of one surface as far as their noise allows (not
+  /// in Method::Path or paper mode). Its bias is not estimated yet: stderr.* is the noise alone.
+  bool share_samples = true;
+  bool components = false;  ///< layers C1..C6 and emission
 };
 
 struct RenderResult {

@@ -1,0 +1,111 @@
+#include "share.h"
+
+#include <array>
+#include <cmath>
+
+#include "scene/parallel.h"
+
+namespace atrium::trace {
+namespace {
+
+constexpr int kLevels = 5;       // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
+constexpr float kErrors = 3.0f;  // standard errors of a difference that noise may explain
+constexpr float kNormalPower = 48.0f;
+constexpr float kPlane = 0.1f;  // tangent of the slope that counts as the same surface
+constexpr std::array<float, 3> kSpline{0.375f, 0.25f, 0.0625f};  // B3
+
+class Level {
+ public:
+  Level(const ShareGuides& guides, const Illumination& in, int step)
+      : g_(guides), in_(in), step_(step) {}
+
+  void pixel(int x, int y, Illumination& out) const {
+    const std::size_t p = index(x, y);
+    if (!(g_.depth[p] > 0.0f)) {
+      out.value[p] = in_.value[p];
+      out.variance[p] = in_.variance[p];
+      return;
+    }
+    const float noise = blurred_variance(x, y);
+    Rgb sum;
+    float weights = 0.0f, variance = 0.0f;
+    for (int dy = -2; dy <= 2; ++dy)
+      for (int dx = -2; dx <= 2; ++dx) {
+        const int qx = x + dx * step_, qy = y + dy * step_;
+        if (qx < 0 || qy < 0 || qx >= g_.width || qy >= g_.height) continue;
+        const std::size_t q = index(qx, qy);
+        float w = kSpline[static_cast<std::size_t>(std::abs(dx))] *
+                  kSpline[static_cast<std::size_t>(std::abs(dy))];
+        if (p != q) w *= same_surface(p, q) * same_light(p, q, noise);
+        sum += in_.value[q] * w;
+        weights += w;
+        variance += w * w * in_.variance[q];
+      }
+    out.value[p] = sum / weights;
+    // From the second level on neighbours hold some of the same samples: composed, the splines
+    // divide the variance by 4 per level where independent pixels would divide it by 13.
+    constexpr float kOverlap = 3.3f;
+    const float independent = variance / (weights * weights);
+    out.variance[p] = step_ > 1 ? std::min(kOverlap * independent, in_.variance[p]) : independent;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(g_.width) +
+           static_cast<std::size_t>(x);
+  }
+  // The variance of one pixel is itself noisy: a pixel that no bright sample has hit looks certain.
+  [[nodiscard]] float blurred_variance(int x, int y) const {
+    float sum = 0.0f, weights = 0.0f;
+    for (int dy = -2; dy <= 2; ++dy)
+      for (int dx = -2; dx <= 2; ++dx) {
+        const int qx = x + dx, qy = y + dy;
+        if (qx < 0 || qy < 0 || qx >= g_.width || qy >= g_.height) continue;
+        const std::size_t q = index(qx, qy);
+        if (!(g_.depth[q] > 0.0f)) continue;
+        const float w = kSpline[static_cast<std::size_t>(std::abs(dx))] *
+                        kSpline[static_cast<std::size_t>(std::abs(dy))];
+        sum += w * in_.variance[q];
+        weights += w;
+      }
+    return weights > 0.0f ? sum / weights : 0.0f;
+  }
+  [[nodiscard]] float same_surface(std::size_t p, std::size_t q) const {
+    if (!(g_.depth[q] > 0.0f)) return 0.0f;
+    const float cosine = g_.normal[p].dot(g_.normal[q]);
+    if (!(cosine > 0.0f)) return 0.0f;
+    const Vec3f d = g_.position[q] - g_.position[p];
+    const float off_plane =
+        std::abs(d.dot(g_.normal[p])) / (kPlane * d.norm() + 1e-5f * g_.depth[p]);
+    return std::pow(cosine, kNormalPower) * std::exp(-off_plane * off_plane);
+  }
+  [[nodiscard]] float same_light(std::size_t p, std::size_t q, float noise) const {
+    const float difference = luminance(in_.value[p]) - luminance(in_.value[q]);
+    const float allowed = kErrors * kErrors * noise;
+    if (!(allowed > 0.0f)) return difference == 0.0f ? 1.0f : 0.0f;
+    return std::exp(-difference * difference / allowed);
+  }
+
+  const ShareGuides& g_;
+  const Illumination& in_;
+  int step_;
+};
+
+}  // namespace
+
+Illumination share_illumination(const ShareGuides& guides, Illumination illumination) {
+  Illumination next = illumination;
+  for (int level = 0; level < kLevels; ++level) {
+    const Level pass(guides, illumination, 1 << level);
+    scene::parallel_for(static_cast<std::size_t>(guides.height), 4,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t y = begin; y < end; ++y)
+                            for (int x = 0; x < guides.width; ++x)
+                              pass.pixel(x, static_cast<int>(y), next);
+                        });
+    std::swap(illumination, next);
+  }
+  return illumination;
+}
+
+}  // namespace atrium::trace

@@ -1,0 +1,96 @@
+#include "share.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace atrium::trace {
+namespace {
+
+constexpr int kSize = 64;
+
+// A wall that faces the camera, one metre per pixel.
+ShareGuides flat_guides() {
+  ShareGuides g{kSize, kSize, {}, {}, {}};
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      g.position.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
+      g.normal.emplace_back(Vec3f::UnitZ());
+      g.depth.push_back(50.0f);
+    }
+  return g;
+}
+
+template <class F>
+Illumination noisy(F&& truth, float sigma) {
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal(0.0f, sigma);
+  Illumination i;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      i.value.emplace_back(truth(x, y) + normal(random));
+      i.variance.push_back(sigma * sigma);
+    }
+  return i;
+}
+
+double rms(const Illumination& i, double truth, int x0, int x1) {
+  double sum = 0.0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = x0; x < x1; ++x)
+      sum += std::pow(
+          static_cast<double>(i.value[static_cast<std::size_t>(y * kSize + x)][1]) - truth, 2.0);
+  return std::sqrt(sum / (kSize * (x1 - x0)));
+}
+
+// Uniform light with 10 % noise: what is left must be well below it, and the reported variance must
+// not promise more than was reached.
+TEST(Share, NoiseOnAFlatWallGoesDown) {
+  const Illumination in = noisy([](int, int) { return 1.0f; }, 0.1f);
+  const Illumination out = share_illumination(flat_guides(), in);
+  const double left = rms(out, 1.0, 0, kSize);
+  EXPECT_LT(left, 0.02);
+  double variance = 0.0;
+  for (const float v : out.variance) variance += static_cast<double>(v);
+  // One realisation of correlated noise on few independent patches: a factor of 2 either way.
+  const double reported = std::sqrt(variance / (kSize * kSize));
+  EXPECT_GT(reported, 0.5 * left);
+  EXPECT_LT(reported, 2.0 * left);
+}
+
+// A shadow edge of ten standard errors stays where it is, on both sides.
+TEST(Share, ShadowEdgesStay) {
+  const Illumination in = noisy([](int x, int) { return x < kSize / 2 ? 1.0f : 2.0f; }, 0.1f);
+  const Illumination out = share_illumination(flat_guides(), in);
+  EXPECT_LT(rms(out, 1.0, kSize / 2 - 1, kSize / 2), 0.1);
+  EXPECT_LT(rms(out, 2.0, kSize / 2, kSize / 2 + 1), 0.1);
+}
+
+// Nothing crosses a corner between two walls or a step in depth, however noisy the light.
+TEST(Share, OtherSurfacesAreNotMixed) {
+  for (const bool corner : {true, false}) {
+    ShareGuides g = flat_guides();
+    for (int y = 0; y < kSize; ++y)
+      for (int x = kSize / 2; x < kSize; ++x) {
+        const auto i = static_cast<std::size_t>(y * kSize + x);
+        if (corner)
+          g.normal[i] = Vec3f::UnitX();
+        else
+          g.position[i].z() = 30.0f;
+      }
+    const Illumination in = noisy([](int x, int) { return x < kSize / 2 ? 0.0f : 1.0f; }, 1.0f);
+    const Illumination out = share_illumination(g, in);
+    double left = 0.0, right = 0.0;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        (x < kSize / 2 ? left : right) +=
+            static_cast<double>(out.value[static_cast<std::size_t>(y * kSize + x)][1]);
+    const double n = 0.5 * kSize * kSize;
+    EXPECT_NEAR(left / n, 0.0, 4.0 / std::sqrt(n)) << corner;  // mean of n independent values
+    EXPECT_NEAR(right / n, 1.0, 4.0 / std::sqrt(n)) << corner;
+  }
+}
+
+}  // namespace
+}  // namespace atrium::trace
