@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "share.h"
-
 namespace atrium::trace {
 namespace {
 
@@ -21,11 +19,15 @@ Film::Film(int width, int height, bool components, bool shares) : width_(width),
 }
 
 void Film::add_body(Body& body, const std::array<Rgb, 2>& radiance, const Rgb& albedo,
-                    const Vec3f& position, float n) {
+                    const Vec3f& position, std::uint32_t sample) {
+  const std::size_t half = sample % 2;
+  const auto n = static_cast<float>(sample + 1);
+  ++body.count[half];
   for (std::size_t part = 0; part < 2; ++part) {
-    const float before = luminance(radiance[part]) - luminance(body.radiance[part]);
-    move_mean(body.radiance[part], radiance[part], n);
-    body.m2[part] += before * (luminance(radiance[part]) - luminance(body.radiance[part]));
+    const float before = luminance(radiance[part]) - luminance(body.mean[part]);
+    move_mean(body.mean[part], radiance[part], n);
+    body.m2[part] += before * (luminance(radiance[part]) - luminance(body.mean[part]));
+    move_mean(body.radiance[part][half], radiance[part], static_cast<float>(body.count[half]));
   }
   move_mean(body.albedo, albedo, n);
   body.position += (position - body.position) / n;
@@ -57,7 +59,7 @@ void Film::add(int x, int y, const PixelSample<N>& sample, const material::Spect
       move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
   if (!bodies_.empty())
     add_body(bodies_[i], {basis.to_rgb(sample.body_direct), basis.to_rgb(sample.body_indirect)},
-             basis.to_rgb(sample.body_albedo), sample.position, n);
+             basis.to_rgb(sample.body_albedo), sample.position, p.count - 1);
   move_mean(p.albedo, basis.to_rgb(sample.albedo), n);
   move_mean(p.irradiance, basis.to_rgb(sample.irradiance), n);
   p.normal += (sample.normal - p.normal) / n;
@@ -89,36 +91,41 @@ void Film::share() {
     guides.normal.push_back(p.normal);
     guides.depth.push_back(usable ? p.depth : 0.0f);
     const float y = luminance(body.albedo);
-    const float n = static_cast<float>(p.count);
+    const auto n = static_cast<float>(p.count);
     for (std::size_t k = 0; k < 2; ++k) {
-      parts[k].value.push_back(
-          usable ? Rgb::generate([&](int c) { return body.radiance[k][c] / body.albedo[c]; })
-                 : Rgb::zero());
-      parts[k].variance.push_back(usable ? body.m2[k] / (n * (n - 1.0f) * y * y) : 0.0f);
+      for (std::size_t h = 0; h < 2; ++h)
+        parts[k].half[h].push_back(
+            usable ? Rgb::generate([&](int c) { return body.radiance[k][h][c] / body.albedo[c]; })
+                   : Rgb::zero());
+      parts[k].variance.push_back(usable ? 2.0f * body.m2[k] / (n * (n - 1.0f) * y * y) : 0.0f);
     }
   }
   const std::array<std::vector<float>, 2> before{parts[0].variance, parts[1].variance};
   for (Illumination& part : parts) part = share_illumination(guides, std::move(part));
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    if (!(guides.depth[i] > 0.0f)) continue;
-    Pixel& p = pixels_[i];
-    const Rgb& albedo = bodies_[i].albedo;
-    const double y2 = std::pow(static_cast<double>(luminance(albedo)), 2.0);
-    double less = 0.0, all = 0.0;  // variance of Y, taken away by sharing and before it
-    const double n = p.count;
-    for (std::size_t c = 0; c < 3; ++c) all += p.m2[c] / (n * (n - 1.0)) / 3.0;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Rgb change = parts[k].value[i] * albedo - bodies_[i].radiance[k];
-      for (std::size_t c = 0; c < 3; ++c)
-        p.mean[c] += static_cast<double>(change[static_cast<int>(c)]);
-      if (!terms_.empty())
-        terms_[i][static_cast<std::size_t>(k == 0 ? Term::DirectReflection
-                                                  : Term::IndirectReflection)] += change;
-      less += y2 * static_cast<double>(before[k][i] - parts[k].variance[i]);
-    }
-    const double kept = all > 0.0 ? std::clamp(1.0 - less / all, 0.01, 1.0) : 1.0;
-    for (double& m2 : p.m2) m2 *= kept;
+  for (std::size_t i = 0; i < pixels_.size(); ++i)
+    if (guides.depth[i] > 0.0f) put_shared(i, parts, {before[0][i], before[1][i]});
+}
+
+void Film::put_shared(std::size_t i, const std::array<Illumination, 2>& parts,
+                      const std::array<float, 2>& before) {
+  Pixel& p = pixels_[i];
+  const Body& body = bodies_[i];
+  const double y = static_cast<double>(luminance(body.albedo));
+  const double n = p.count;
+  const float even = static_cast<float>(body.count[0]) / static_cast<float>(p.count);
+  double all = 0.0, less = 0.0;  // variance of the mean: of the pixel, and what sharing takes away
+  for (std::size_t c = 0; c < 3; ++c) all += p.m2[c] / (n * (n - 1.0)) / 3.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Rgb shared = parts[k].half[0][i] * even + parts[k].half[1][i] * (1.0f - even);
+    const Rgb change = shared * body.albedo - body.mean[k];
+    for (std::size_t c = 0; c < 3; ++c)
+      p.mean[c] += static_cast<double>(change[static_cast<int>(c)]);
+    const Term term = k == 0 ? Term::DirectReflection : Term::IndirectReflection;
+    if (!terms_.empty()) terms_[i][static_cast<std::size_t>(term)] += change;
+    less += 0.5 * y * y * static_cast<double>(before[k] - parts[k].variance[i]);  // two halves
   }
+  const double kept = all > 0.0 ? std::clamp(1.0 - less / all, 0.01, 1.0) : 1.0;
+  for (double& m2 : p.m2) m2 *= kept;
 }
 
 scene::Image Film::image() const {

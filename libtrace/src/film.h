@@ -7,6 +7,7 @@
 #include "pixel_sample.h"
 #include "scene/counters.h"
 #include "scene/image.h"
+#include "share.h"
 
 namespace atrium::trace {
 
@@ -36,15 +37,21 @@ class Film {
     std::uint32_t count = 0;
     std::uint32_t hits = 0;
   };
-  /// Light from a surface's body, by part (direct, indirect), and what it needs to be shared.
+  /// Light from a surface's body by part (direct, indirect) and half of the samples (even, odd),
+  /// and what it needs to be shared.
   struct Body {
-    std::array<Rgb, 2> radiance;
-    std::array<float, 2> m2{};  // of luminance
+    std::array<std::array<Rgb, 2>, 2> radiance;  // [part][half]
+    std::array<float, 2> m2{};                   // of luminance, both halves, by part
+    std::array<Rgb, 2> mean;                     // by part
+    std::array<std::uint32_t, 2> count{};        // by half
     Rgb albedo;
     Vec3f position = Vec3f::Zero();
   };
-  void add_body(Body& body, const std::array<Rgb, 2>& radiance, const Rgb& albedo,
-                const Vec3f& position, float n);
+  static void add_body(Body& body, const std::array<Rgb, 2>& radiance, const Rgb& albedo,
+                       const Vec3f& position, std::uint32_t sample);
+
+  void put_shared(std::size_t pixel, const std::array<Illumination, 2>& parts,
+                  const std::array<float, 2>& before);
 
   int width_, height_;
   std::vector<Pixel> pixels_;

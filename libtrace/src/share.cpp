@@ -21,31 +21,37 @@ class Level {
 
   void pixel(int x, int y, Illumination& out) const {
     const std::size_t p = index(x, y);
-    if (!(g_.depth[p] > 0.0f)) {
-      out.value[p] = in_.value[p];
-      out.variance[p] = in_.variance[p];
-      return;
-    }
+    out.half[0][p] = in_.half[0][p];
+    out.half[1][p] = in_.half[1][p];
+    out.variance[p] = in_.variance[p];
+    if (!(g_.depth[p] > 0.0f)) return;
     const float noise = blurred_variance(x, y);
-    Rgb sum;
-    float weights = 0.0f, variance = 0.0f;
+    std::array<Rgb, 2> sum;
+    std::array<float, 2> weights{}, variance{};
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx) {
         const int qx = x + dx * step_, qy = y + dy * step_;
         if (qx < 0 || qy < 0 || qx >= g_.width || qy >= g_.height) continue;
         const std::size_t q = index(qx, qy);
-        float w = kSpline[static_cast<std::size_t>(std::abs(dx))] *
-                  kSpline[static_cast<std::size_t>(std::abs(dy))];
-        if (p != q) w *= same_surface(p, q) * same_light(p, q, noise);
-        sum += in_.value[q] * w;
-        weights += w;
-        variance += w * w * in_.variance[q];
+        const float surface = kSpline[static_cast<std::size_t>(std::abs(dx))] *
+                              kSpline[static_cast<std::size_t>(std::abs(dy))] *
+                              (p == q ? 1.0f : same_surface(p, q));
+        if (!(surface > 0.0f)) continue;
+        for (std::size_t h = 0; h < 2; ++h) {
+          const float w = p == q ? surface : surface * same_light(in_.half[1 - h], p, q, noise);
+          sum[h] += in_.half[h][q] * w;
+          weights[h] += w;
+          variance[h] += w * w * in_.variance[q];
+        }
       }
-    out.value[p] = sum / weights;
     // From the second level on neighbours hold some of the same samples: composed, the splines
     // divide the variance by 4 per level where independent pixels would divide it by 13.
     constexpr float kOverlap = 3.3f;
-    const float independent = variance / (weights * weights);
+    float independent = 0.0f;
+    for (std::size_t h = 0; h < 2; ++h) {
+      out.half[h][p] = sum[h] / weights[h];
+      independent += 0.5f * variance[h] / (weights[h] * weights[h]);
+    }
     out.variance[p] = step_ > 1 ? std::min(kOverlap * independent, in_.variance[p]) : independent;
   }
 
@@ -79,8 +85,9 @@ class Level {
         std::abs(d.dot(g_.normal[p])) / (kPlane * d.norm() + 1e-5f * g_.depth[p]);
     return std::pow(cosine, kNormalPower) * std::exp(-off_plane * off_plane);
   }
-  [[nodiscard]] float same_light(std::size_t p, std::size_t q, float noise) const {
-    const float difference = luminance(in_.value[p]) - luminance(in_.value[q]);
+  [[nodiscard]] static float same_light(const std::vector<Rgb>& value, std::size_t p, std::size_t q,
+                                        float noise) {
+    const float difference = luminance(value[p]) - luminance(value[q]);
     const float allowed = kErrors * kErrors * noise;
     if (!(allowed > 0.0f)) return difference == 0.0f ? 1.0f : 0.0f;
     return std::exp(-difference * difference / allowed);

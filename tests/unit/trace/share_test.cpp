@@ -29,7 +29,7 @@ Illumination noisy(F&& truth, float sigma) {
   Illumination i;
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
-      i.value.emplace_back(truth(x, y) + normal(random));
+      for (auto& half : i.half) half.emplace_back(truth(x, y) + normal(random));
       i.variance.push_back(sigma * sigma);
     }
   return i;
@@ -40,7 +40,7 @@ double rms(const Illumination& i, double truth, int x0, int x1) {
   for (int y = 0; y < kSize; ++y)
     for (int x = x0; x < x1; ++x)
       sum += std::pow(
-          static_cast<double>(i.value[static_cast<std::size_t>(y * kSize + x)][1]) - truth, 2.0);
+          static_cast<double>(i.half[0][static_cast<std::size_t>(y * kSize + x)][1]) - truth, 2.0);
   return std::sqrt(sum / (kSize * (x1 - x0)));
 }
 
@@ -53,10 +53,36 @@ TEST(Share, NoiseOnAFlatWallGoesDown) {
   EXPECT_LT(left, 0.02);
   double variance = 0.0;
   for (const float v : out.variance) variance += static_cast<double>(v);
-  // One realisation of correlated noise on few independent patches: a factor of 2 either way.
+  // The overlap factor holds for full weights; where noise holds some neighbours off, each level
+  // reports more than it leaves. So: never below the error (0.7 for one realisation of few
+  // independent patches), and not so far above that sharing would seem useless.
   const double reported = std::sqrt(variance / (kSize * kSize));
-  EXPECT_GT(reported, 0.5 * left);
-  EXPECT_LT(reported, 2.0 * left);
+  EXPECT_GT(reported, 0.7 * left);
+  EXPECT_LT(reported, 0.1 / 4.0);
+}
+
+// Rare bright samples, as light through a small gap gives them: the mean is what counts, and it
+// stays. (Weights from the samples themselves lose a tenth of it.)
+TEST(Share, SkewedNoiseKeepsItsMean) {
+  std::mt19937 random(9);
+  std::exponential_distribution<float> rare(1.0f);
+  Illumination in;
+  for (int i = 0; i < kSize * kSize; ++i) {
+    for (auto& half : in.half) {
+      const float x = rare(random);
+      half.emplace_back(x * x * 0.5f);  // mean 1, variance 5
+    }
+    in.variance.push_back(5.0f);
+  }
+  const Illumination out = share_illumination(flat_guides(), in);
+  double before = 0.0, after = 0.0;
+  for (std::size_t i = 0; i < kSize * kSize; ++i)
+    for (std::size_t h = 0; h < 2; ++h) {
+      before += static_cast<double>(in.half[h][i][1]);
+      after += static_cast<double>(out.half[h][i][1]);
+    }
+  const double n = 2.0 * kSize * kSize;
+  EXPECT_NEAR(after / n, before / n, 4.0 * std::sqrt(5.0 / n));
 }
 
 // A shadow edge of ten standard errors stays where it is, on both sides.
@@ -85,7 +111,7 @@ TEST(Share, OtherSurfacesAreNotMixed) {
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x)
         (x < kSize / 2 ? left : right) +=
-            static_cast<double>(out.value[static_cast<std::size_t>(y * kSize + x)][1]);
+            static_cast<double>(out.half[0][static_cast<std::size_t>(y * kSize + x)][1]);
     const double n = 0.5 * kSize * kSize;
     EXPECT_NEAR(left / n, 0.0, 4.0 / std::sqrt(n)) << corner;  // mean of n independent values
     EXPECT_NEAR(right / n, 1.0, 4.0 / std::sqrt(n)) << corner;
