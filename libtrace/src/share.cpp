@@ -14,10 +14,22 @@ constexpr float kNormalPower = 48.0f;
 constexpr float kPlane = 0.1f;  // tangent of the slope that counts as the same surface
 constexpr std::array<float, 3> kSpline{0.375f, 0.25f, 0.0625f};  // B3
 
+template <class F>
+void for_rows(const ShareGuides& guides, F&& pixel) {
+  scene::parallel_for(static_cast<std::size_t>(guides.height), 4,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t y = begin; y < end; ++y)
+                          for (int x = 0; x < guides.width; ++x) pixel(x, static_cast<int>(y));
+                      });
+}
+
 class Level {
  public:
+  // Weights are the same from p to q as from q to p: what a pixel gives away others receive.
   Level(const ShareGuides& guides, const Illumination& in, int step)
-      : g_(guides), in_(in), step_(step) {}
+      : g_(guides), in_(in), step_(step), noise_(in.variance.size()) {
+    for_rows(guides, [&](int x, int y) { noise_[index(x, y)] = blurred_variance(x, y); });
+  }
 
   void pixel(int x, int y, Illumination& out) const {
     const std::size_t p = index(x, y);
@@ -25,7 +37,6 @@ class Level {
     out.half[1][p] = in_.half[1][p];
     out.variance[p] = in_.variance[p];
     if (!(g_.depth[p] > 0.0f)) return;
-    const float noise = blurred_variance(x, y);
     std::array<Rgb, 2> sum;
     std::array<float, 2> weights{}, variance{};
     for (int dy = -2; dy <= 2; ++dy)
@@ -38,7 +49,7 @@ class Level {
                               (p == q ? 1.0f : same_surface(p, q));
         if (!(surface > 0.0f)) continue;
         for (std::size_t h = 0; h < 2; ++h) {
-          const float w = p == q ? surface : surface * same_light(in_.half[1 - h], p, q, noise);
+          const float w = p == q ? surface : surface * same_light(in_.half[1 - h], p, q);
           sum[h] += in_.half[h][q] * w;
           weights[h] += w;
           variance[h] += w * w * in_.variance[q];
@@ -81,14 +92,15 @@ class Level {
     const float cosine = g_.normal[p].dot(g_.normal[q]);
     if (!(cosine > 0.0f)) return 0.0f;
     const Vec3f d = g_.position[q] - g_.position[p];
+    const float height = std::max(std::abs(d.dot(g_.normal[p])), std::abs(d.dot(g_.normal[q])));
     const float off_plane =
-        std::abs(d.dot(g_.normal[p])) / (kPlane * d.norm() + 1e-5f * g_.depth[p]);
+        height / (kPlane * d.norm() + 1e-5f * std::max(g_.depth[p], g_.depth[q]));
     return std::pow(cosine, kNormalPower) * std::exp(-off_plane * off_plane);
   }
-  [[nodiscard]] static float same_light(const std::vector<Rgb>& value, std::size_t p, std::size_t q,
-                                        float noise) {
+  [[nodiscard]] float same_light(const std::vector<Rgb>& value, std::size_t p,
+                                 std::size_t q) const {
     const float difference = luminance(value[p]) - luminance(value[q]);
-    const float allowed = kErrors * kErrors * noise;
+    const float allowed = kErrors * kErrors * 0.5f * (noise_[p] + noise_[q]);
     if (!(allowed > 0.0f)) return difference == 0.0f ? 1.0f : 0.0f;
     return std::exp(-difference * difference / allowed);
   }
@@ -96,6 +108,7 @@ class Level {
   const ShareGuides& g_;
   const Illumination& in_;
   int step_;
+  std::vector<float> noise_;
 };
 
 }  // namespace
@@ -104,12 +117,7 @@ Illumination share_illumination(const ShareGuides& guides, Illumination illumina
   Illumination next = illumination;
   for (int level = 0; level < kLevels; ++level) {
     const Level pass(guides, illumination, 1 << level);
-    scene::parallel_for(static_cast<std::size_t>(guides.height), 4,
-                        [&](std::size_t begin, std::size_t end) {
-                          for (std::size_t y = begin; y < end; ++y)
-                            for (int x = 0; x < guides.width; ++x)
-                              pass.pixel(x, static_cast<int>(y), next);
-                        });
+    for_rows(guides, [&](int x, int y) { pass.pixel(x, y, next); });
     std::swap(illumination, next);
   }
   return illumination;
