@@ -100,7 +100,11 @@ class Level {
   [[nodiscard]] float same_light(const std::vector<Rgb>& value, std::size_t p,
                                  std::size_t q) const {
     const float difference = luminance(value[p]) - luminance(value[q]);
-    const float allowed = kErrors * kErrors * 0.5f * (noise_[p] + noise_[q]);
+    // Harmonic mean: a pixel that is sure of its light does not take from one that is not, as next
+    // to a lamp that nearly touches a ceiling.
+    const float sum = noise_[p] + noise_[q];
+    const float allowed =
+        sum > 0.0f ? kErrors * kErrors * 2.0f * noise_[p] * noise_[q] / sum : 0.0f;
     if (!(allowed > 0.0f)) return difference == 0.0f ? 1.0f : 0.0f;
     return std::exp(-difference * difference / allowed);
   }
