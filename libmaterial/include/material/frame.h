@@ -7,6 +7,11 @@
 
 namespace atrium {
 
+template <class Real>
+using Vec2 = Eigen::Matrix<Real, 2, 1>;
+template <class Real>
+using Vec3 = Eigen::Matrix<Real, 3, 1>;
+
 using Vec2f = Eigen::Vector2f;
 using Vec3f = Eigen::Vector3f;
 using Vec2d = Eigen::Vector2d;
