@@ -81,9 +81,9 @@ struct ResolvedMaterial {
   Spectrum<N> transmission_tint;
   Spectrum<N> extinction;  ///< K [1/m]
   Spectrum<N> emission;
-  Spectrum<N> pane_kd;                   ///< K d
-  std::optional<GaussianFacets> facets;  ///< rough lobe
-  Spectrum<N> coherent_g;                ///< (4 pi sigma / lambda)^2, if the source has sigma
+  Spectrum<N> pane_kd;                          ///< K d
+  std::optional<GaussianFacets<float>> facets;  ///< rough lobe
+  Spectrum<N> coherent_g;  ///< (4 pi sigma / lambda)^2, if the source has sigma
   std::shared_ptr<const CoupledBody<N>> coupled;  ///< shared by copies of the same material
 };
 template <int N>
@@ -173,7 +173,7 @@ class Bsdf {
   Spectrum<N> extinction_;
   Spectrum<N> coherent_g_;  ///< (4 pi sigma / lambda)^2 per lane
   bool coherent_ = false;   ///< sigma is given: lobe and mirror share the light
-  std::optional<GaussianFacets> facets_;
+  std::optional<GaussianFacets<float>> facets_;
   const CoupledBody<N>* coupled_ = nullptr;
 };
 

@@ -49,7 +49,7 @@ TEST(GaussianFacetsNorm, Limits) {
 TEST(GaussianFacets, DensitiesIntegrateToOne) {
   for (const double c : kAllC) {
     SCOPED_TRACE(c);
-    const GaussianFacets facets(c);
+    const GaussianFacets<float> facets(c);
     const auto over_sphere = [&](const std::function<double(const Vec3f&, double)>& f) {
       return simpson([&](double d) { return 2.0 * kPi * std::sin(d) * f(facet(d, 0.4), d); }, 0.0,
                      end_of_lobe(c), 2000);
@@ -71,7 +71,7 @@ TEST(GaussianFacets, VCavitiesPassTheWeakWhiteFurnace) {
   for (const double c : {0.0, 0.5, 1.0, 3.0, 10.0, 50.0})
     for (const double theta : {0.0, 0.4, 1.0, 1.4, 1.55}) {
       SCOPED_TRACE(testing::Message() << "c " << c << " theta " << theta);
-      const GaussianFacets facets(c);
+      const GaussianFacets<float> facets(c);
       const Vec3f b = facet(theta, 0.0);
       const int rings = 600, sectors = 720;
       double sum = 0.0;
@@ -96,7 +96,7 @@ TEST(GaussianFacets, VCavitiesPassTheWeakWhiteFurnace) {
 TEST(GaussianFacets, SamplesFollowTheirDensity) {
   for (const double c : {0.0, 1e-4, 0.3, 1.0, 2.0, 5.0, 30.0, 1e4}) {
     SCOPED_TRACE(c);
-    const GaussianFacets facets(c);
+    const GaussianFacets<float> facets(c);
     std::mt19937 random(17);
     std::uniform_real_distribution<float> u(0.0f, 1.0f);
     constexpr int kSamples = 40000, kRings = 16, kSectors = 8;
@@ -106,7 +106,7 @@ TEST(GaussianFacets, SamplesFollowTheirDensity) {
       const Vec3f h = facets.sample({u(random), u(random)});
       ASSERT_NEAR(h.norm(), 1.0f, 1e-6f);
       ASSERT_GE(h.z(), 0.0f);
-      const double delta = static_cast<double>(angle_between(h, Vec3f::UnitZ()));
+      const double delta = static_cast<double>(angle_to_normal(h));
       const double cdf =
           c < 1e-3 ? std::pow(delta / (0.5 * kPi), 2) : -std::expm1(-c * c * delta * delta) / q;
       const double phi = std::atan2(static_cast<double>(h.y()), static_cast<double>(h.x()));
@@ -129,7 +129,7 @@ TEST(GaussianFacets, PdfIsTheDerivativeOfTheDistribution) {
   for (const double c : {1e-4, 2e-3, 0.5, 2.0, 20.0})
     for (const double x : {0.1, 0.5, 0.9}) {
       SCOPED_TRACE(testing::Message() << "c " << c << " x " << x);
-      const GaussianFacets facets(c);
+      const GaussianFacets<float> facets(c);
       const double delta = x * std::min(0.5 * kPi, 2.0 / c), e = 1e-4 * delta;
       const auto distribution = [&](double d) { return -std::expm1(-c * c * d * d); };
       const double slope =
@@ -145,7 +145,7 @@ TEST(GaussianFacets, SamplingWeightIsCloseToOne) {
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   for (const double c : {0.0, 1.0, 3.0, 10.0, 1e3, 1e6}) {
     SCOPED_TRACE(c);
-    const GaussianFacets facets(c);
+    const GaussianFacets<float> facets(c);
     double mean = 0.0;
     for (int i = 0; i < 20000; ++i) {
       const Vec3f h = facets.sample({u(random), u(random)});
@@ -160,7 +160,7 @@ TEST(GaussianFacets, SamplingWeightIsCloseToOne) {
 
 TEST(GaussianFacets, EdgesGiveNumbers) {
   for (const double c : {0.0, 1e-8, 1.0, 1e6}) {
-    const GaussianFacets facets(c);
+    const GaussianFacets<float> facets(c);
     for (const float u : {0.0f, 1e-38f, 0.5f, 0.99999994f}) {
       const Vec3f h = facets.sample({u, u});
       EXPECT_TRUE(h.allFinite());
@@ -184,7 +184,7 @@ TEST(Microfacet, VCavitiesAreSymmetricAndFinite) {
 // delta = 1e-4 from float vectors: acos(n.h) would give 0 or 3.5e-4.
 TEST(Microfacet, SmallAnglesKeepTheirDigits) {
   const Vec3f h(1e-4f, 0.0f, std::sqrt(1.0f - 1e-8f));
-  EXPECT_NEAR(angle_between(h, Vec3f::UnitZ()) / 1e-4f, 1.0f, 1e-6f);
+  EXPECT_NEAR(angle_to_normal(h) / 1e-4f, 1.0f, 1e-6f);
 }
 
 }  // namespace
