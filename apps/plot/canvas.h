@@ -36,6 +36,8 @@ class Canvas {
   virtual void polyline(std::span<const Point> points, const Stroke& stroke) = 0;
   /// Filled, even-odd.
   virtual void polygon(std::span<const Point> points, const Rgba& fill) = 0;
+  /// An opaque picture over `box`; rgb of width x height pixels, rows from the top.
+  virtual void image(const Box& box, int width, int height, std::span<const unsigned char> rgb) = 0;
   /// `style` says size, justification about `anchor`, rotation and colour.
   virtual void text(const Point& anchor, const std::string& text, vtkTextProperty* style) = 0;
   /// "" or what went wrong.

@@ -1,6 +1,7 @@
 #include "plot/chart_device.h"
 
 #include <vtkBrush.h>
+#include <vtkImageData.h>
 #include <vtkObjectFactory.h>
 #include <vtkPen.h>
 #include <vtkStdString.h>
@@ -184,6 +185,17 @@ void ChartDevice::ComputeStringBounds(const vtkUnicodeString& text, float bounds
   ComputeStringBounds(vtkStdString(text.utf8_str()), bounds);
 }
 #endif
+
+void ChartDevice::DrawImage(const vtkRectf& box, vtkImageData* image) {
+  if (canvas_ == nullptr) return;
+  const float corners[] = {box.GetLeft(), box.GetBottom(), box.GetRight(), box.GetTop()};
+  const std::vector<Point> p = transformed(corners, 2);
+  int size[3];
+  image->GetDimensions(size);
+  const auto bytes = 3 * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
+  canvas_->image({p[0].x, p[0].y, p[1].x, p[1].y}, size[0], size[1],
+                 {static_cast<const unsigned char*>(image->GetScalarPointer()), bytes});
+}
 
 void ChartDevice::SetMatrix(vtkMatrix3x3* m) { matrix_->DeepCopy(m); }
 void ChartDevice::GetMatrix(vtkMatrix3x3* m) { m->DeepCopy(matrix_); }

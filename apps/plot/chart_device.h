@@ -16,7 +16,7 @@ namespace atrium::plot {
 
 /// Through this VTK's charts draw onto a Canvas: transforms become coordinates, pens and brushes
 /// become values. VTK's own device for SVG scales pens and dashes by the axes of a plot, its other
-/// ones need OpenGL. Markers and images, which the charts here have none of, are not drawn.
+/// ones need OpenGL. Markers, which the charts here have none of, are not drawn.
 class ChartDevice final : public vtkContextDevice2D {
  public:
   static ChartDevice* New();
@@ -50,7 +50,8 @@ class ChartDevice final : public vtkContextDevice2D {
   void ComputeStringBounds(const vtkUnicodeString& text, float bounds[4]) override;
 #endif
   void DrawImage(float*, float, vtkImageData*) override {}
-  void DrawImage(const vtkRectf&, vtkImageData*) override {}
+  /// Three components of unsigned char, rows from the top.
+  void DrawImage(const vtkRectf& box, vtkImageData* image) override;
 
   void SetColor4(unsigned char*) override {}  // pen and brush say it
   void SetTexture(vtkImageData*, int) override {}

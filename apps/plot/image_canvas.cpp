@@ -97,6 +97,26 @@ class ImageCanvas final : public Canvas {
     blend(drawn, fill);
   }
 
+  void image(const Box& box, int width, int height, std::span<const unsigned char> rgb) override {
+    Window drawn{edge(box.x0), edge(box.y0), edge(box.x1), edge(box.y1)};
+    const Window whole = drawn;
+    drawn.limit(clip_);
+    // The pixel of the picture at the middle of a pixel of the canvas.
+    const auto source = [](int at, int from, int to, int count) {
+      return std::clamp(static_cast<int>((at + 0.5 - from) * count / (to - from)), 0, count - 1);
+    };
+    for (int y = drawn.y0; y < drawn.y1; ++y) {
+      const int row = height - 1 - source(y, whole.y0, whole.y1, height);
+      for (int x = drawn.x0; x < drawn.x1; ++x) {
+        const int column = source(x, whole.x0, whole.x1, width);
+        mix(x, y,
+            &rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(column))],
+            1.0F);
+      }
+    }
+  }
+
   void text(const Point& anchor, const std::string& text, vtkTextProperty* style) override {
     vtkNew<vtkTextProperty> scaled;
     scaled->ShallowCopy(style);
@@ -165,6 +185,9 @@ class ImageCanvas final : public Canvas {
     }
   };
 
+  [[nodiscard]] int edge(double v) const {
+    return static_cast<int>(std::lround(std::clamp(v * ratio_, -1e6, 1e6)));
+  }
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   }

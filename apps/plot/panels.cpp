@@ -5,11 +5,9 @@
 #include <vtkChartLegend.h>
 #include <vtkChartXY.h>
 #include <vtkContext2D.h>
-#include <vtkContextItem.h>
 #include <vtkContextScene.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
 #include <vtkSmartPointer.h>
@@ -20,45 +18,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "plot/axis_range.h"
 #include "plot/curve_pieces.h"
-#include "plot/font.h"
+#include "plot/drawing.h"
 
 namespace atrium::plot {
 namespace {
 
-constexpr int kTitleSize = 14, kAxisTitleSize = 12, kLabelSize = 11;
-constexpr double kTitleHeight = 30.0, kSwatchRow = 52.0, kMargin = 10.0;
-
-/// What a function paints, in units of the picture.
-class Drawing final : public vtkContextItem {
- public:
-  static Drawing* New();
-  vtkTypeMacro(Drawing, vtkContextItem);
-  Drawing(const Drawing&) = delete;
-  void operator=(const Drawing&) = delete;
-  bool Paint(vtkContext2D* painter) override {
-    paint(painter);
-    return true;
-  }
-  std::function<void(vtkContext2D*)> paint;
-
- private:
-  Drawing() = default;
-  ~Drawing() override = default;
-};
-vtkStandardNewMacro(Drawing);
-
-void add_drawing(vtkContextScene* scene, std::function<void(vtkContext2D*)> paint) {
-  vtkNew<Drawing> drawing;
-  drawing->paint = std::move(paint);
-  scene->AddItem(drawing);
-}
+constexpr double kSwatchRow = 52.0, kMargin = 10.0;
 
 /// Okabe & Ito 2008 without the yellow, which is too light for lines on white.
 Color palette(std::size_t i) {
@@ -70,31 +40,6 @@ Color palette(std::size_t i) {
                                                  {0.337, 0.706, 0.914},
                                                  {0.902, 0.624, 0.000}}};
   return kColors[i % kColors.size()];
-}
-
-void set_text(vtkTextProperty* style, int size, bool bold = false) {
-  set_font(style, bold);
-  style->SetFontSize(size);
-  style->SetColor(0.13, 0.13, 0.13);
-}
-
-void draw_text(vtkContext2D* painter, double x, double y, const std::string& text, int size,
-               bool bold = false) {
-  vtkNew<vtkTextProperty> style;
-  set_text(style, size, bold);
-  style->SetJustificationToCentered();
-  style->SetVerticalJustificationToCentered();
-  painter->ApplyTextProp(style);
-  painter->DrawString(static_cast<float>(x), static_cast<float>(y), text);
-}
-
-/// Takes a strip off the top of `box` for the title.
-void add_title(const std::string& title, Box& box, vtkContextScene* scene) {
-  if (title.empty()) return;
-  box.y1 -= kTitleHeight;
-  add_drawing(
-      scene, [x = 0.5 * (box.x0 + box.x1), y = box.y1 + 0.5 * kTitleHeight,
-              title](vtkContext2D* painter) { draw_text(painter, x, y, title, kTitleSize, true); });
 }
 
 /// The swatch fills `box` but for a margin and a line for the name.

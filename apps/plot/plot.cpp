@@ -6,6 +6,7 @@
 
 #include "material/error.h"
 #include "plot/plot_module.h"
+#include "plot/sheet_layout.h"
 #include "scene/modules.h"
 #include "scene/output_file.h"
 
@@ -97,6 +98,28 @@ void check(const SwatchChart& chart) {
   if (chart.columns < 1) refuse("columns of swatches must be positive");
 }
 
+void check(const SheetChart& sheet) {
+  if (sheet.columns.empty() || sheet.tiles.size() != sheet.columns.size() * sheet.rows.size()) {
+    refuse("sheet of " + std::to_string(sheet.columns.size()) + " x " +
+           std::to_string(sheet.rows.size()) + " has " + std::to_string(sheet.tiles.size()) +
+           " tiles");
+  }
+  const Tile* first = nullptr;
+  for (const Tile& tile : sheet.tiles) {
+    if (tile.width == 0) continue;
+    if (first == nullptr) first = &tile;
+    if (tile.width < 1 || tile.height < 1 || tile.width != first->width ||
+        tile.height != first->height ||
+        tile.rgb.size() !=
+            3 * static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height)) {
+      refuse("tile of " + std::to_string(tile.width) + " x " + std::to_string(tile.height) +
+             " with " + std::to_string(tile.rgb.size()) +
+             " bytes (valid: one size for all, 3 bytes of a pixel)");
+    }
+  }
+  if (first == nullptr) refuse("sheet without a tile");
+}
+
 void check(const Picture& picture) {
   const auto side_ok = [](int side) { return side >= 100 && side <= 10000; };
   if (!side_ok(picture.width) || !side_ok(picture.height)) {
@@ -110,6 +133,12 @@ void check(const Picture& picture) {
 }
 
 }  // namespace
+
+std::array<int, 2> sheet_size(const SheetChart& sheet) {
+  const SheetLayout layout(sheet);
+  return {static_cast<int>(std::ceil(layout.left + layout.columns * layout.cell_width())),
+          static_cast<int>(std::ceil(layout.above() + layout.rows * layout.cell_height()))};
+}
 
 bool plot_available() {
   try {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -67,7 +68,24 @@ struct SwatchChart {
   std::vector<Swatch> swatches;
 };
 
-using Panel = std::variant<Chart, PolarChart, SwatchChart>;
+/// 8 bits, encoded sRGB.
+struct Tile {
+  int width = 0, height = 0;
+  std::vector<unsigned char> rgb = {};  ///< 3 per pixel, rows from the top
+};
+
+/// Pictures side by side with names of rows and columns (a contact sheet). All tiles are of one
+/// size and drawn as large as fits; a pixel of a tile stays a rectangle of one colour, so give the
+/// picture the size of sheet_size() to see each as it is.
+struct SheetChart {
+  std::string title;
+  std::vector<std::string> columns, rows;
+  std::vector<Tile> tiles;  ///< row by row; width 0: left out
+};
+/// Size of a picture of one sheet in which a pixel of a tile is one unit: {width, height}.
+[[nodiscard]] std::array<int, 2> sheet_size(const SheetChart& sheet);
+
+using Panel = std::variant<Chart, PolarChart, SwatchChart, SheetChart>;
 
 struct Picture {
   int width = 720, height = 480;  ///< of the whole picture, in units of SVG (CSS pixels)
@@ -81,7 +99,7 @@ struct Picture {
 /// \throws Error                  for an unknown ending, a folder that is not there
 /// \throws std::invalid_argument  for no panels, x and y of different lengths, colours or angles
 ///                                out of range, negative radii, ranges that are empty, too narrow
-///                                or not positive on log axes
+///                                or not positive on log axes, tiles of several sizes or too few
 /// \throws RuntimeFailure         if the module is missing, not built, or cannot write
 void write_plot(const std::filesystem::path& file, const std::vector<Panel>& panels,
                 const Picture& picture = {});

@@ -8,7 +8,7 @@
 namespace atrium::plot {
 
 /// Version of this interface and of plot.h; a module of another build is refused.
-inline constexpr int kPlotInterface = 1;
+inline constexpr int kPlotInterface = 2;
 
 enum class Format { Svg, Png };
 

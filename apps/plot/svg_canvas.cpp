@@ -1,13 +1,18 @@
+#include <vtkImageData.h>
 #include <vtkNew.h>
+#include <vtkPNGWriter.h>
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
 #include <vtkTextRenderer.h>
+#include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <string_view>
 
 #include "plot/canvas.h"
 
@@ -62,6 +67,38 @@ std::string paint(const char* name, const Rgba& color) {
   return out;
 }
 
+std::vector<unsigned char> png(int width, int height, std::span<const unsigned char> rgb) {
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(width, height, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  const auto row = 3 * static_cast<std::size_t>(width);
+  for (int y = 0; y < height; ++y) {  // VTK's rows are from below
+    const auto from = rgb.subspan(static_cast<std::size_t>(height - 1 - y) * row, row);
+    std::copy(from.begin(), from.end(),
+              static_cast<unsigned char*>(image->GetScalarPointer(0, y, 0)));
+  }
+  vtkNew<vtkPNGWriter> writer;
+  writer->WriteToMemoryOn();
+  writer->SetInputData(image);
+  writer->Write();
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  return {bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues()};
+}
+
+/// RFC 4648.
+std::string base64(const std::vector<unsigned char>& bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return k < bytes.size() ? bytes[k] : 0U; };
+    const unsigned word = at(i) << 16U | at(i + 1) << 8U | at(i + 2);
+    for (unsigned digit = 0; digit < 4; ++digit)
+      out += i + digit <= bytes.size() ? kDigits[(word >> (18U - 6U * digit)) & 63U] : '=';
+  }
+  return out;
+}
+
 class SvgCanvas final : public Canvas {
  public:
   SvgCanvas(int width, int height) : width_(width), height_(height) {}
@@ -95,6 +132,14 @@ class SvgCanvas final : public Canvas {
   void polygon(std::span<const Point> points, const Rgba& fill) override {
     body_ << "<polygon points=\"" << list(points) << "\"" << paint("fill", fill)
           << " fill-rule=\"evenodd\"" << clip_ << "/>\n";
+  }
+
+  void image(const Box& box, int width, int height, std::span<const unsigned char> rgb) override {
+    body_ << "<image x=\"" << number(box.x0) << "\" y=\"" << number(height_ - box.y1)
+          << "\" width=\"" << number(box.x1 - box.x0) << "\" height=\"" << number(box.y1 - box.y0)
+          << "\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\""
+          << " href=\"data:image/png;base64," << base64(png(width, height, rgb)) << "\"" << clip_
+          << "/>\n";
   }
 
   void text(const Point& anchor, const std::string& text, vtkTextProperty* style) override {

@@ -356,4 +356,74 @@ TEST(Plot, TheModuleIsThereIfItWasBuilt) {
 #endif
 }
 
+/// One row: a tile of red over blue, none, and one of green pixels, 8 x 6.
+SheetChart small_sheet() {
+  SheetChart sheet;
+  sheet.title = "Sheet";
+  sheet.columns = {"first", "none", "last"};
+  sheet.rows = {"row"};
+  Tile tile{8, 6, std::vector<unsigned char>(8 * 6 * 3, 0)};
+  for (std::size_t i = 0; i < 48; ++i) tile.rgb[3 * i + (i < 24 ? 0 : 2)] = 255;
+  Tile green{8, 6, std::vector<unsigned char>(8 * 6 * 3, 0)};
+  for (std::size_t i = 0; i < 48; ++i) green.rgb[3 * i + 1] = 255;
+  sheet.tiles = {tile, {}, green};
+  return sheet;
+}
+
+TEST(Plot, SheetShowsEveryPixelOfItsTiles) {
+  ATRIUM_NEEDS_MODULE();
+  const TempFolder folder;
+  SheetChart sheet = small_sheet();
+  // Larger than the least size of a picture.
+  for (Tile& tile : sheet.tiles) {
+    if (tile.width == 0) continue;
+    Tile large{80, 60, {}};
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x)
+        for (int c = 0; c < 3; ++c)
+          large.rgb.push_back(tile.rgb[static_cast<std::size_t>(3 * (y / 10 * 8 + x / 10) + c)]);
+    tile = large;
+  }
+  const auto [width, height] = sheet_size(sheet);
+  write_plot(folder / "sheet.png", {sheet}, {.width = width, .height = height, .pixel_ratio = 1});
+  const auto image = atrium::scene::read_image(folder / "sheet.png");
+  ASSERT_EQ(image.width, width);
+  int counts[3] = {0, 0, 0}, red_row = 0, blue_row = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        // Read back as linear light: pure colours stay what they are.
+        bool pure = true;
+        for (int k = 0; k < 3; ++k) pure &= image.at(x, y, k) == (k == c ? 1.0f : 0.0f);
+        if (!pure) continue;
+        ++counts[c];
+        if (c == 0) red_row = y;
+        if (c == 2 && blue_row == 0) blue_row = y;
+      }
+  EXPECT_EQ(counts[0], 80 * 30);
+  EXPECT_EQ(counts[1], 80 * 60);
+  EXPECT_EQ(counts[2], 80 * 30);
+  EXPECT_EQ(blue_row, red_row + 1) << "the first rows of a tile are its top";
+}
+
+TEST(Plot, SheetInSvgHoldsPngAndNames) {
+  ATRIUM_NEEDS_MODULE();
+  const std::string svg = svg_of({small_sheet()});
+  EXPECT_EQ(count(svg, "href=\"data:image/png;base64,iVBORw0KGgo"), 2);
+  for (const char* name : {">Sheet<", ">first<", ">none<", ">last<", ">row<"})
+    EXPECT_EQ(count(svg, name), 1) << name;
+}
+
+TEST(Plot, SheetRefusesTilesThatDoNotFit) {
+  SheetChart sheet = small_sheet();
+  sheet.tiles.pop_back();
+  EXPECT_THROW(write_plot("x.png", {sheet}), std::invalid_argument);
+  sheet = small_sheet();
+  sheet.tiles[0].rgb.pop_back();
+  EXPECT_THROW(write_plot("x.png", {sheet}), std::invalid_argument);
+  sheet = small_sheet();
+  sheet.tiles[2] = {4, 12, std::vector<unsigned char>(4 * 12 * 3, 0)};
+  EXPECT_THROW(write_plot("x.png", {sheet}), std::invalid_argument);
+}
+
 }  // namespace
