@@ -112,6 +112,11 @@ double effective_sigma(double K_sum, double sigma0) {
   return sigma0 / std::sqrt(1.0 + lambert_w_of_exp(2.0 * log_A));
 }
 
+double he_g(const HeGeometry& geometry, double lambda) {
+  const double height = 2.0 * kPi * geometry.sigma / lambda;
+  return height * height * geometry.sum_cos2;
+}
+
 }  // namespace
 
 double lambert_w_of_exp(double x) {
@@ -175,15 +180,20 @@ HeGeometry::HeGeometry(const Vec3d& l, const Vec3d& b, double sigma0, double tau
               : 0.0;
 }
 
+double he1991_specular(const HeGeometry& geometry, double lambda, double n, double k) {
+  if (!geometry.above) return 0.0;
+  return fresnel(geometry.cos_theta, n, k).mean() * detail::exp_minus(he_g(geometry, lambda)) *
+         geometry.S;
+}
+
 He1991<double> he1991(const HeGeometry& geometry, double tau, double lambda, double n, double k) {
   if (!geometry.above) return {};
   He1991<double> h{};
   h.sigma_eff = geometry.sigma;
   h.S = geometry.S;
   h.G = geometry.G;
-  const double height = 2.0 * kPi * geometry.sigma / lambda;
-  h.g = height * height * geometry.sum_cos2;
-  h.specular = fresnel(geometry.cos_theta, n, k).mean() * detail::exp_minus(h.g) * h.S;
+  h.g = he_g(geometry, lambda);
+  h.specular = he1991_specular(geometry, lambda, n, k);
   const double width = kPi * tau / lambda;
   const double sum = he_sum(h.g, width * width * geometry.q_xy2);
   h.D = 0.25 * width * width * sum;

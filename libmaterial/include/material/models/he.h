@@ -60,6 +60,9 @@ struct HeGeometry {
 [[nodiscard]] He1991<double> he1991(const HeGeometry& geometry, double tau, double lambda, double n,
                                     double k);
 
+/// Its mirror part F e^-g S alone, without the sum.
+[[nodiscard]] double he1991_specular(const HeGeometry& geometry, double lambda, double n, double k);
+
 /// f = mirror * Dirac + f_dd + a, from rms height sigma0, autocorrelation length tau and wavelength
 /// lambda in one unit, index n + i k relative to the incident medium. Reciprocal. The albedo may
 /// exceed 1: up to 1.012 for F = 1 off normal. Source: He, Torrance, Sillion, Greenberg 1991.
