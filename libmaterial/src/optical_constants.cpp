@@ -65,4 +65,10 @@ std::vector<std::string> optical_constants_names() {
   return names;
 }
 
+std::vector<std::pair<std::string, std::string>> optical_constants_aliases() {
+  std::vector<std::pair<std::string, std::string>> aliases;
+  for (const auto& [english, symbol] : kEnglishNames) aliases.emplace_back(english, symbol);
+  return aliases;
+}
+
 }  // namespace atrium::material
