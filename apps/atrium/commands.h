@@ -15,6 +15,7 @@ int run_material_eval(const MaterialEvalCommand& command);
 int run_material_derive(const MaterialDeriveCommand& command);
 int run_material_list(const MaterialListCommand& command);
 int run_material_show(const MaterialShowCommand& command);
+int run_material_compare(const MaterialCompareCommand& command, std::stop_token stop);
 
 inline constexpr int kInterrupted = 130;
 

@@ -30,6 +30,7 @@ struct Run {
   int operator()(const MaterialDeriveCommand& c) const { return run_material_derive(c); }
   int operator()(const MaterialListCommand& c) const { return run_material_list(c); }
   int operator()(const MaterialShowCommand& c) const { return run_material_show(c); }
+  int operator()(const MaterialCompareCommand& c) const { return run_material_compare(c, stop); }
 };
 
 }  // namespace

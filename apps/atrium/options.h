@@ -117,6 +117,17 @@ struct MaterialShowCommand {
   bool json = false;
 };
 
+/// `atrium material compare`.
+struct MaterialCompareCommand {
+  CommonOptions common;
+  std::string folder;                  ///< is there already
+  std::vector<std::string> materials;  ///< empty: all
+  std::array<int, 2> size{96, 72};     ///< of a picture
+  int samples = 64;                    ///< of a pixel, even
+  std::uint64_t seed = 1;
+  bool quick = false;
+};
+
 /// Nothing left to do but to leave with a code (help, version, configuration printed).
 struct Finished {
   int code = 0;
@@ -124,7 +135,7 @@ struct Finished {
 
 using Command = std::variant<Finished, RenderCommand, SolveCommand, InfoCommand, CompareCommand,
                              MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
-                             MaterialShowCommand>;
+                             MaterialShowCommand, MaterialCompareCommand>;
 
 /// \throws Error  on wrong usage, one line.
 [[nodiscard]] Command parse_command_line(int argc, char** argv);

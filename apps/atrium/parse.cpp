@@ -216,7 +216,9 @@ struct MaterialParser {
   MaterialDeriveCommand derive;
   MaterialListCommand list;
   MaterialShowCommand show;
+  MaterialCompareCommand compare;
   DeriveTexts derive_texts;
+  std::string compare_size = "96x72";
 
   void add(CLI::App& material) {
     material.require_subcommand(1);
@@ -226,12 +228,15 @@ struct MaterialParser {
     material.add_subcommand("list", "materials and illuminants known")
         ->add_flag("--json", list.json, "for programs");
     add_show(*material.add_subcommand("show", "data sheet of a material"));
+    add_compare(*material.add_subcommand(
+        "compare", "study: this model beside others, in pictures, lobes, numbers and times"));
   }
-  [[nodiscard]] Command finished(const CLI::App& sub) const {
+  [[nodiscard]] Command finished(const CLI::App& sub, const std::string& command_line) const {
     const std::string& name = sub.get_name();
     if (name == "eval") return eval;
     if (name == "derive") return finish(derive, derive_texts, sub);
     if (name == "list") return list;
+    if (name == "compare") return finished_compare(command_line);
     return show;
   }
 
@@ -273,6 +278,37 @@ struct MaterialParser {
         ->capture_default_str();
     CLI::Option* json = sub.add_flag("--json", derive.json, "for programs");
     sub.add_flag("--csv", derive.csv, "for tables")->excludes(json);
+  }
+  void add_compare(CLI::App& sub) {
+    sub.add_option("-o,--output", compare.folder,
+                   "folder; gets material-study.md and images/study/*.png")
+        ->required()
+        ->type_name("DIR");
+    sub.add_option("--materials", compare.materials,
+                   "some of gold,copper,aluminium,plastic,glass; default: all")
+        ->delimiter(',')
+        ->type_name("NAMES");
+    sub.add_option("--size", compare_size, "of each picture, 16x16 to 1000x1000")
+        ->type_name("WxH")
+        ->capture_default_str();
+    sub.add_option("--samples", compare.samples, "of a pixel")
+        ->check(CLI::Range(2, 1 << 20))
+        ->capture_default_str();
+    sub.add_option("--seed", compare.seed, "of all random numbers")->capture_default_str();
+    sub.add_flag("--quick", compare.quick, "fewer models and cases, for a try");
+    sub.add_option("--threads", compare.common.threads, "threads; 0: one per core")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    sub.add_flag("--quiet,-q", compare.common.quiet, "no progress; warnings stay");
+  }
+  [[nodiscard]] MaterialCompareCommand finished_compare(const std::string& command_line) const {
+    MaterialCompareCommand o = compare;
+    o.common.command_line = command_line;
+    o.size = parse_size(compare_size);
+    for (const int side : o.size)
+      if (side < 16 || side > 1000)
+        throw Error("--size " + compare_size + ": is not within 16x16 and 1000x1000");
+    return o;
   }
   void add_show(CLI::App& sub) {
     sub.add_option("name", show.name, "see atrium material list")->required()->type_name("NAME");
@@ -384,7 +420,7 @@ Command finished_command(Parser& p, const std::string& command_line) {
     finish(p.info.scene, p.info_texts);
     return p.info;
   }
-  if (name == "material") return p.material.finished(*sub.get_subcommands().front());
+  if (name == "material") return p.material.finished(*sub.get_subcommands().front(), command_line);
   return p.compare;
 }
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "material/bsdf.h"
+#include "material/paper.h"
+
 namespace atrium::study {
 
 namespace {
@@ -20,7 +23,7 @@ constexpr int kSectors = 12, kRings = 19;
 struct Nodes {
   struct Node {
     Vec3f wi;
-    double weight;  // cos dw
+    double weight;  // solid angle
     int patch;
   };
   std::vector<Node> nodes;
@@ -37,11 +40,11 @@ struct Nodes {
       const int ring = psi < 5.0 * kDegree ? 0 : 1 + static_cast<int>((psi / kDegree - 5.0) / 10.0);
       for (int j = 0; j < kAzimuths; ++j) {
         const double phi = 2.0 * kPi * (j + 0.5) / kAzimuths;
-        const Vec3d wi = std::cos(psi) * r +
-                         std::sin(psi) * (std::cos(phi) * x + std::sin(phi) * y);
+        const Vec3d wi =
+            std::cos(psi) * r + std::sin(psi) * (std::cos(phi) * x + std::sin(phi) * y);
         if (!(wi.z() > 0.0)) continue;
         const int sector = ring == 0 ? 0 : j * kSectors / kAzimuths;
-        nodes.push_back({wi.cast<float>(), wi.z() * solid_angle, ring * kSectors + sector});
+        nodes.push_back({wi.cast<float>(), solid_angle, ring * kSectors + sector});
       }
     }
   }
@@ -49,22 +52,65 @@ struct Nodes {
 
 }  // namespace
 
-LobeSurface::LobeSurface(const material::Material& material, const material::SpectralBasis& basis)
-    : material_(std::make_shared<const material::Material>(material)),
-      resolved_(std::make_shared<const material::ResolvedMaterial<3>>(
-          material::resolve_material<3>(*material_, basis))),
-      bsdf_(*resolved_, true, material::Spectrum<3>::one(), material::Spectrum<3>::one(), 1.0f) {}
+struct LobeSurface::Kind {
+  virtual ~Kind() = default;
+  [[nodiscard]] virtual double eval_cos(const Vec3f& wo, const Vec3f& wi) const = 0;
+  [[nodiscard]] virtual double mirror(const Vec3f& wo) const = 0;
+};
 
-double LobeSurface::eval(const Vec3f& wo, const Vec3f& wi) const {
-  return static_cast<double>(material::luminance(bsdf_.eval(wo, wi).sum()));
+namespace {
+
+template <int N>
+double luminance_of(const Spectrum<N>& lanes) {
+  if constexpr (N == 1)
+    return static_cast<double>(lanes[0]);
+  else
+    return static_cast<double>(atrium::luminance(lanes));
 }
 
-double LobeSurface::mirror(const Vec3f& wo) const {
-  if (!bsdf_.has(material::kMirror)) return 0.0;
-  // A sample of this event alone has probability one, so that its weight is the reflectance.
-  const auto s = bsdf_.sample(wo, 0.5f, Vec2f(0.5f, 0.5f), material::kMirror);
-  return s ? static_cast<double>(material::luminance(s->weight)) : 0.0;
+template <int N, class Kind>
+struct Surface final : Kind {
+  material::Material material;
+  material::ResolvedMaterial<N> resolved;
+  material::Bsdf<N> bsdf;
+  material::PaperSurface<N> paper;
+  bool literal;
+
+  Surface(const material::Material& m, trace::Mode mode, const material::SpectralBasis& basis)
+      : material(m),
+        resolved(material::resolve_material<N>(material, basis)),
+        bsdf(resolved, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f),
+        paper(resolved, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f),
+        literal(mode == trace::Mode::Paper) {}
+
+  double eval_cos(const Vec3f& wo, const Vec3f& wi) const override {
+    if (literal) return luminance_of<N>(paper.direct(wo, wi)) * std::numbers::inv_pi;
+    return luminance_of<N>(bsdf.eval(wo, wi).sum()) * static_cast<double>(wi.z());
+  }
+  double mirror(const Vec3f& wo) const override {
+    if (literal) return luminance_of<N>(paper.mirror(wo.z()));
+    if (!bsdf.has(material::kMirror)) return 0.0;
+    // A sample of this event alone has probability one, so that its weight is the reflectance.
+    const auto s = bsdf.sample(wo, 0.5f, Vec2f(0.5f, 0.5f), material::kMirror);
+    return s ? luminance_of<N>(s->weight) : 0.0;
+  }
+};
+
+}  // namespace
+
+LobeSurface::LobeSurface(const material::Material& material, trace::Mode mode,
+                         const material::SpectralBasis& basis) {
+  if (basis.lanes() == 1)
+    kind_ = std::make_unique<const Surface<1, Kind>>(material, mode, basis);
+  else
+    kind_ = std::make_unique<const Surface<3, Kind>>(material, mode, basis);
 }
+LobeSurface::~LobeSurface() = default;
+
+double LobeSurface::eval_cos(const Vec3f& wo, const Vec3f& wi) const {
+  return kind_->eval_cos(wo, wi);
+}
+double LobeSurface::mirror(const Vec3f& wo) const { return kind_->mirror(wo); }
 
 Vec3f in_plane(double theta_deg) {
   const double t = theta_deg * kDegree;
@@ -83,8 +129,8 @@ LobeDifference lobe_difference(const LobeSurface& reference, const LobeSurface& 
   d.other = other_mirror;
   d.strict = std::abs(mirror - other_mirror);
   for (const Nodes::Node& node : nodes.nodes) {
-    const double a = reference.eval(wo, node.wi) * node.weight;
-    const double b = other.eval(wo, node.wi) * node.weight;
+    const double a = reference.eval_cos(wo, node.wi) * node.weight;
+    const double b = other.eval_cos(wo, node.wi) * node.weight;
     d.albedo += a;
     d.other += b;
     d.strict += std::abs(a - b);

@@ -13,7 +13,6 @@ namespace atrium::study {
 namespace {
 
 using material::Material;
-using material::Rgb;
 
 material::SampledSpectrum kappa_of(const material::OpticalConstants& c) {
   // The index of absorption k / n on the grid of both tables.
@@ -59,7 +58,7 @@ const std::vector<Substance>& substances() {
   static const std::vector<Substance> all = [] {
     std::vector<Substance> list{from_table("gold", "Au"), from_table("copper", "Cu"),
                                 from_table("aluminium", "Al")};
-    list.push_back({.name = "plastic", .body = Rgb(0.55f, 0.07f, 0.05f)});
+    list.push_back({.name = "plastic", .body = make_rgb(0.55, 0.07, 0.05)});
     list.push_back(from_table("glass", "soda-lime-glass"));
     list.back().kappa = 0.0;  // what it absorbs in the thickness of a facet
     list.back().transparent = true;
@@ -137,7 +136,7 @@ Material make_material(const Substance& s, const Roughness& r, Model model) {
     case Model::Paper:
     case Model::SolidPaper:
       // The paper knows no sigma: what is meant to be a mirror has to be called smooth.
-      if (slope > 0.02) m.c = 1.0 / slope;
+      if (r.sigma > 50e-9) m.c = 1.0 / slope;
       break;
     case Model::Phong:
       m.lobe = material::PhongModel{0.5 / (slope * slope)};

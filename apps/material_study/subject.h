@@ -13,8 +13,8 @@ namespace atrium::study {
 /// The same surface in every model: a Gaussian one of rms height sigma, correlation length tau.
 struct Roughness {
   std::string name;
-  double sigma = 0.0;  ///< [m]
-  double tau = 1e-6;   ///< [m]
+  double sigma = 0.0;                                               ///< [m]
+  double tau = 1e-6;                                                ///< [m]
   [[nodiscard]] double slope() const { return 2.0 * sigma / tau; }  ///< m, rms
 };
 /// smooth (sigma 20 nm), medium (slope 0.1), rough (slope 0.35, several wavelengths high).
