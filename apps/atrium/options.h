@@ -122,7 +122,7 @@ struct MaterialCompareCommand {
   CommonOptions common;
   std::string folder;                  ///< is there already
   std::vector<std::string> materials;  ///< empty: all
-  std::array<int, 2> size{96, 72};     ///< of a picture
+  std::array<int, 2> size{80, 60};     ///< of a picture
   int samples = 64;                    ///< of a pixel, even
   std::uint64_t seed = 1;
   bool quick = false;

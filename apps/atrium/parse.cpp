@@ -218,7 +218,7 @@ struct MaterialParser {
   MaterialShowCommand show;
   MaterialCompareCommand compare;
   DeriveTexts derive_texts;
-  std::string compare_size = "96x72";
+  std::string compare_size = "80x60";
 
   void add(CLI::App& material) {
     material.require_subcommand(1);

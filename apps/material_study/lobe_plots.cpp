@@ -30,12 +30,35 @@ plot::Curve lobe_curve(const std::string& name, const LobeSurface& surface, doub
   return curve;
 }
 
+/// The same in every chart.
+plot::Color color_of(Model model) {
+  switch (model) {
+    case Model::Facets:
+      return {0.0, 0.447, 0.698};
+    case Model::Paper:
+      return {0.835, 0.369, 0.0};
+    case Model::Phong:
+      return {0.0, 0.62, 0.451};
+    case Model::CookTorrance:
+      return {0.8, 0.475, 0.655};
+    case Model::He:
+      return {0.0, 0.0, 0.0};
+    case Model::BlinnPhong:
+      return {0.337, 0.706, 0.914};
+    case Model::Schlick:
+      return {0.902, 0.624, 0.0};
+    default:
+      return {0.55, 0.55, 0.55};
+  }
+}
+
 std::vector<plot::Curve> lobe_curves(const Substance& s, const Roughness& r, double theta) {
   std::vector<plot::Curve> curves;
   for (const Model model : all_models(s)) {
-    if (model == Model::Coupled || (r.sigma < 50e-9 && model == Model::Paper)) continue;
+    if (model == Model::Coupled || model == Model::Solid) continue;
     const LobeSurface surface(make_material(s, r, model), mode_of(model));
     curves.push_back(lobe_curve(name_of(model), surface, theta, model == Model::He));
+    curves.back().color = color_of(model);
   }
   return curves;
 }
@@ -75,7 +98,7 @@ std::vector<plot::Panel> lobe_panels(const Substance& s) {
     panels.emplace_back(plot::PolarChart{.title = s.name + ", " + levels[i].name,
                                          .r_title = "f cos [1/sr], light from 45°",
                                          .curves = lobe_curves(s, levels[i], kLobeAngle),
-                                         .legend = plot::LegendPlace::TopLeft});
+                                         .legend = plot::LegendPlace::None});
   return panels;
 }
 
@@ -111,16 +134,16 @@ std::vector<plot::Panel> wave_error_panels(const std::vector<WaveResult>& result
                       .y_title = "difference",
                       .log_x = true,
                       .log_y = true,
-                      .y_range = plot::Range{0.003, 3.0},
+                      .y_range = plot::Range{0.002, 1.0},
                       .curves = {},
-                      .legend = plot::LegendPlace::BottomLeft};
+                      .legend = plot::LegendPlace::TopLeft};
     for (const double tau : {10.0, 40.0}) {
       const std::string name = "tau " + short_number(tau);
-      plot::Curve picture{.name = name + ": picture", .x = {}, .y = {}};
+      plot::Curve picture{.name = name + ": picture, 95 % bound", .x = {}, .y = {}};
       plot::Curve lobe{.name = name + ": lobe, 30°", .x = {}, .y = {}, .dashed = true};
       for (const WaveResult& r : results) {
         if (r.wave.substance.name != substance || r.wave.tau != tau || r.wave.steep()) continue;
-        picture.x.push_back(r.wave.sigma), picture.y.push_back(r.image.error);
+        picture.x.push_back(r.wave.sigma), picture.y.push_back(r.image.high);
         lobe.x.push_back(r.wave.sigma), lobe.y.push_back(r.lobe30.seen);
       }
       if (picture.x.empty()) continue;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "material_study/lobe_plots.h"
@@ -62,13 +63,13 @@ std::string parameter_table() {
 
 std::string image_table(const std::vector<SurfaceResult>& surfaces, Stage stage) {
   const auto at = static_cast<std::size_t>(stage);
-  Table table({"surface", "model", "error %", "RMSE %", "bias %", "noise %"});
+  Table table({"surface", "model", "error %", "at most", "RMSE %", "bias %", "noise %"});
   for (const SurfaceResult& s : surfaces)
     for (const ModelResult& m : s.models) {
       if (!m.rendered[at]) continue;
       const ImageDifference& d = m.image[at];
       table.row({s.substance + ", " + s.roughness.name, name_of(m.model), percent(d.error),
-                 percent(d.rmse), signed_percent(d.bias), percent(d.noise)});
+                 percent(d.high), percent(d.rmse), signed_percent(d.bias), percent(d.noise)});
     }
   return table.text();
 }
@@ -96,34 +97,44 @@ std::string timing_table(const std::vector<Timing>& timings) {
 
 std::string wave_table(const std::vector<WaveResult>& results) {
   Table table({"surface", "sigma/lambda", "slope m", "mirror, facets", "mirror, He",
-               "lobe difference 30°", "as seen 30°", "as seen 60°", "picture: error %", "RMSE %",
-               "bias %", "noise %", "D and G alone: error %"});
+               "lobe difference 30°", "as seen 30°", "as seen 60°", "picture: error %", "at most",
+               "RMSE %", "bias %", "noise %", "D and G alone: error %"});
   for (const WaveResult& r : results) {
     const WaveCase& w = r.wave;
     table.row({w.substance.name + ", tau = " + short_number(w.tau) + " lambda",
                short_number(w.sigma), short_number(w.slope()) + (w.steep() ? " (steep)" : ""),
                fixed(r.lobe30.other_mirror, 3), fixed(r.lobe30.mirror, 3),
                fixed(r.lobe30.strict, 3), fixed(r.lobe30.seen, 3), fixed(r.lobe60.seen, 3),
-               percent(r.image.error), percent(r.image.rmse), signed_percent(r.image.bias),
-               percent(r.image.noise), percent(r.geometric.error)});
+               percent(r.image.error), percent(r.image.high), percent(r.image.rmse),
+               signed_percent(r.image.bias), percent(r.image.noise), percent(r.geometric.error)});
   }
   return table.text();
 }
 
+/// "0.05 to 1, 5" of those for which `does` is `wanted`.
+std::string ranges(const Verdict& v, bool wanted) {
+  std::string text;
+  for (std::size_t i = 0; i < v.does.size();) {
+    std::size_t end = i;
+    while (end < v.does.size() && v.does[end] == wanted) ++end;
+    if (end > i) {
+      text += (text.empty() ? "" : ", ") + short_number(v.looked_at[i]);
+      if (end > i + 1) text += " to " + short_number(v.looked_at[end - 1]);
+    }
+    i = std::max(end, i + 1);
+  }
+  return text.empty() ? "none" : text;
+}
+
 std::string verdict_table(const std::vector<WaveResult>& results) {
-  Table table({"surface", "error of the picture", "facets do from sigma/lambda",
-               "and, nearly mirrors, up to", "looked at up to"});
+  Table table({"surface", "error of the picture", "facets do at sigma/lambda", "not at"});
   for (const char* substance : {"metal", "dielectric"})
     for (const double tau : {10.0, 40.0})
-      for (const double error : {0.02, 0.05, 0.10}) {
+      for (const double error : {0.02, 0.05, 0.10, 0.20}) {
         const Verdict v = verdict(results, substance, tau, error);
-        if (!(v.last > 0.0)) continue;
-        const auto text = [](double x) {
-          return x > 0.0 ? short_number(x) : std::string("nowhere");
-        };
+        if (v.does.empty()) continue;
         table.row({std::string(substance) + ", tau = " + short_number(tau) + " lambda",
-                   short_number(100.0 * error) + " %", text(v.from), text(v.up_to),
-                   short_number(v.last)});
+                   short_number(100.0 * error) + " %", ranges(v, true), ranges(v, false)});
       }
   return table.text();
 }

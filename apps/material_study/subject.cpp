@@ -192,7 +192,7 @@ double fitted_schlick_r(double m) {
     // Steps of 0.25 dB about r = m^2, where the densities have equal peaks, up to 1.
     const double r = m * m * std::pow(1.0 / (m * m), i / 60.0);
     schlick.lobe = material::SchlickModel{r, 1.0};
-    const double d = lobe_difference(reference, LobeSurface(schlick), 45.0).strict;
+    const double d = lobe_difference(reference, LobeSurface(schlick), 45.0).seen;
     if (d < least) least = d, best = r;
   }
   return known[m] = best;

@@ -58,8 +58,8 @@ enum class Model {
 [[nodiscard]] material::Material make_material(const Substance& substance,
                                                const Roughness& roughness, Model model);
 
-/// Schlick's r whose lobe and mirror differ least from the facets of slope m without a coherent
-/// part (lobe_difference() at 45 degrees, F = 1).
+/// Schlick's r whose lobe and mirror together look most like the facets of slope m without a
+/// coherent part (LobeDifference::seen at 45 degrees, F = 1).
 [[nodiscard]] double fitted_schlick_r(double m);
 
 }  // namespace atrium::study

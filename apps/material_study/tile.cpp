@@ -130,14 +130,16 @@ plot::Tile show(const RenderedTile& tile) {
   for (int y = 0; y < mapped.height; ++y)
     for (int x = 0; x < mapped.width; ++x)
       for (const double v : rgb(mapped, x, y))
-        out.rgb.push_back(static_cast<unsigned char>(std::lround(255.0 * v)));
+        // Six bits, below the noise: files of half the size.
+        out.rgb.push_back(static_cast<unsigned char>(std::lround(63.0 * v) * 255 / 63));
   return out;
 }
 
 ImageDifference difference(const RenderedTile& image, const RenderedTile& reference) {
   const Image mean = mean_of(reference);
   const std::vector<double> scale = scales(mean);
-  double error2 = 0.0, square = 0.0, noise2 = 0.0, sum = 0.0, Y_image = 0.0, Y_reference = 0.0;
+  double error2 = 0.0, error4 = 0.0, square = 0.0, noise2 = 0.0, sum = 0.0, Y_image = 0.0,
+         Y_reference = 0.0;
   std::size_t count = 0;
   for (int y = 0; y < mean.height; ++y)
     for (int x = 0; x < mean.width; ++x) {
@@ -145,20 +147,26 @@ ImageDifference difference(const RenderedTile& image, const RenderedTile& refere
       if (!reference.subject[pixel]) continue;
       const auto a = rgb(image.half[0], x, y), b = rgb(image.half[1], x, y);
       const auto ra = rgb(reference.half[0], x, y), rb = rgb(reference.half[1], x, y);
+      double pixel_error = 0.0;
       for (std::size_t c = 0; c < 3; ++c) {
         const double product = (a[c] - ra[c]) * (b[c] - rb[c]);
         square += product;
-        error2 += product / (scale[pixel] * scale[pixel]);
+        pixel_error += product / (scale[pixel] * scale[pixel]) / 3.0;
         noise2 += 0.25 * (a[c] - b[c]) * (a[c] - b[c]) / (scale[pixel] * scale[pixel]);
         sum += 0.5 * (ra[c] + rb[c]);
       }
+      error2 += pixel_error;
+      error4 += pixel_error * pixel_error;
       Y_image += 0.5 * (luminance(a) + luminance(b));
       Y_reference += 0.5 * (luminance(ra) + luminance(rb));
-      count += 3;
+      ++count;
     }
-  const double n = static_cast<double>(std::max<std::size_t>(count, 1));
+  const double pixels = static_cast<double>(std::max<std::size_t>(count, 1)), n = 3.0 * pixels;
   ImageDifference d;
-  d.error = std::sqrt(std::max(0.0, error2 / n));
+  const double mean2 = error2 / pixels;  // of the square; pixels are independent
+  const double deviation = std::sqrt(std::max(0.0, error4 / pixels - mean2 * mean2) / pixels);
+  d.error = std::sqrt(std::max(0.0, mean2));
+  d.high = std::sqrt(std::max(0.0, mean2) + 1.96 * deviation);
   d.rmse = std::sqrt(std::max(0.0, square / n)) * n / sum;
   d.bias = Y_image / Y_reference - 1.0;
   d.noise = std::sqrt(noise2 / n);

@@ -13,7 +13,7 @@
 namespace atrium::study {
 
 struct TileOptions {
-  int width = 96, height = 72;
+  int width = 80, height = 60;
   int samples = 64;  ///< of a pixel, even
   std::uint64_t seed = 1;
 };
@@ -40,6 +40,7 @@ struct RenderedTile {
 /// are products of those of independent halves: noise does not add to them.
 struct ImageDifference {
   double error = 0.0;  ///< RMS of (I - R) / (Y5(R) + 0.05 median Y(R)), as `atrium compare`
+  double high = 0.0;   ///< end of its 95 % confidence interval
   double rmse = 0.0;   ///< RMS of I - R over the mean of R, all channels
   double bias = 0.0;   ///< mean Y(I) / mean Y(R) - 1
   double noise = 0.0;  ///< RMS noise of one picture as `error`: what a single one would add

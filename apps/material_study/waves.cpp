@@ -29,24 +29,27 @@ WaveResult compare_waves(const WaveCase& wave, const TileOptions& options,
   const Roughness roughness = wave.roughness();
   const material::Material facets = make_material(wave.substance, roughness, Model::Facets);
   const material::Material he = make_material(wave.substance, roughness, Model::He);
-  const auto tile = [&](const material::Material& m) {
-    return render_tile(Stage::Sphere, m, trace::Mode::Radiometric, basis, options, control);
+  const auto tile = [&](const material::Material& m, int effort) {
+    TileOptions o = options;
+    o.samples *= effort;
+    return render_tile(Stage::Sphere, m, trace::Mode::Radiometric, basis, o, control);
   };
+  constexpr int kFine = 4;  // differences of a percent are looked for
   WaveResult r;
   r.wave = wave;
   const LobeSurface reference(he, trace::Mode::Radiometric, basis);
   const LobeSurface cheap(facets, trace::Mode::Radiometric, basis);
   r.lobe30 = lobe_difference(reference, cheap, 30.0);
   r.lobe60 = lobe_difference(reference, cheap, 60.0);
-  const RenderedTile facet_tile = tile(facets), he_tile = tile(he);
+  const RenderedTile facet_tile = tile(facets, kFine), he_tile = tile(he, kFine);
   r.image = difference(facet_tile, he_tile);
   r.facets = show(facet_tile);
   r.he = show(he_tile);
 
   material::Material lobe_only = facets;
   lobe_only.sigma.reset();
-  r.geometric = difference(tile(make_material(wave.substance, roughness, Model::CookTorrance)),
-                           tile(lobe_only));
+  r.geometric = difference(tile(make_material(wave.substance, roughness, Model::CookTorrance), 1),
+                           tile(lobe_only, 1));
   return r;
 }
 
@@ -59,14 +62,10 @@ Verdict verdict(const std::vector<WaveResult>& results, const std::string& subst
   std::sort(cases.begin(), cases.end(),
             [](const auto* a, const auto* b) { return a->wave.sigma < b->wave.sigma; });
   Verdict v;
-  if (cases.empty()) return v;
-  v.last = cases.back()->wave.sigma;
   for (const WaveResult* r : cases) {
-    if (!(r->image.error <= error)) break;
-    v.up_to = r->wave.sigma;
+    v.looked_at.push_back(r->wave.sigma);
+    v.does.push_back(r->image.high <= error);
   }
-  for (auto r = cases.rbegin(); r != cases.rend() && (*r)->image.error <= error; ++r)
-    v.from = (*r)->wave.sigma;
   return v;
 }
 

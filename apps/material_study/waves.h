@@ -33,11 +33,11 @@ struct WaveResult {
 [[nodiscard]] WaveResult compare_waves(const WaveCase& wave, const TileOptions& options,
                                        const scene::Control& control);
 
-/// Where the facets do for an error, of the cases of one substance and tau that are not steep.
+/// Where the facets do for an error: the 95 % bound of the picture's error is below it. Of the
+/// cases of one substance and tau that are not steep.
 struct Verdict {
-  double from = 0.0;   ///< smallest sigma / lambda from which on the error stays below; 0: none
-  double up_to = 0.0;  ///< largest up to which it stays below (nearly a mirror); 0: none
-  double last = 0.0;   ///< largest sigma / lambda looked at
+  std::vector<double> looked_at;  ///< sigma / lambda, increasing
+  std::vector<bool> does;
 };
 [[nodiscard]] Verdict verdict(const std::vector<WaveResult>& results, const std::string& substance,
                               double tau, double error);
