@@ -103,8 +103,7 @@ void read_roughness(const YamlMap& map, Material& m) {
 material::LobeModel read_lobe(const YamlView& view) {
   using namespace material;
   if (!view.is_map()) {
-    view.choice({"facets"});
-    return FacetModel{};
+    if (view.choice({"facets"}) == 0) return FacetModel{};
   }
   const YamlMap map = view.map("lobe", {"phong", "blinn_phong", "cook_torrance", "he", "oren_nayar",
                                         "hanrahan_krueger", "schlick", "ggx"});
