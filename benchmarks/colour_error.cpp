@@ -2,12 +2,12 @@
 // CIEDE2000 in the light's own white. Writes the tables of docs/spectra.md to standard output.
 //
 //   colour_error [--all]     --all: every material, light and number of bounces
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <functional>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,12 +53,9 @@ Material of_table(const char* name) {
   const OpticalConstants& table = *find_optical_constants(name);
   Material m;
   m.n = table.n;
-  SampledSpectrum kappa = table.k, extinction = table.k;
-  for (std::size_t i = 0; i < kappa.value.size(); ++i) {
-    kappa.value[i] /= table.n.value[i];
-    extinction.value[i] *= 4.0 * std::numbers::pi / (table.k.wavelength_nm[i] * 1e-9);
-  }
-  m.extinction = extinction;
+  SampledSpectrum kappa = table.k;
+  for (std::size_t i = 0; i < kappa.value.size(); ++i) kappa.value[i] /= table.n.value[i];
+  m.extinction = extinction_of(table);
   // k belongs to the interface of metals and to the body of what is transparent.
   if (max_value(table.k) > 0.1) m.kappa = kappa;
   return m;

@@ -304,7 +304,8 @@ ColourError ColourErrorPredictor::error(const SpectralBasis& basis) const {
         const Eigen::Vector3d lanes = xyz_from_rgb() * rgb.col(column++);
         const double difference =
             ciede2000(lab_from_xyz(lanes, l.white), lab_from_xyz(truth, l.white));
-        if (!(difference > worst.ciede2000)) continue;
+        // NaN stays the worst, so that no bound accepts it.
+        if (std::isnan(worst.ciede2000) || difference <= worst.ciede2000) continue;
         worst.ciede2000 = difference;
         worst.cause = (s.material != nullptr ? s.material->name + ", " : std::string()) +
                       words(s.aspect) + ", light " + l.given.name +
