@@ -35,7 +35,7 @@ struct ColourError {
 ///   lights; the light itself counts if it is sampled;
 /// - lights given by RGB or number count as D65, which lanes are relative to: they have no spectrum
 ///   to be right about.
-/// Cost: about 0.05 ms per material; nothing is computed if nothing is sampled.
+/// Cost: about 0.1 ms per material; nothing is computed if nothing is sampled.
 class ColourErrorPredictor {
  public:
   /// \param materials  not null; kept by value.  Lights of one spectral shape count once.
