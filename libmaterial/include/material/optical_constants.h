@@ -24,4 +24,7 @@ struct OpticalConstants {
 [[nodiscard]] const OpticalConstants* find_optical_constants(std::string_view name);
 [[nodiscard]] std::vector<std::string> optical_constants_names();
 
+/// Lambert extinction K = 4 pi k / lambda [1/m] of the material's bulk, on the grid of k.
+[[nodiscard]] SampledSpectrum extinction_of(const OpticalConstants& constants);
+
 }  // namespace atrium::material
