@@ -6,9 +6,10 @@ namespace atrium::material {
 
 // Where total reflection begins, at mu = edge for n < 1, F has a square-root edge (rounded by k),
 // and for n near 1 it falls steeply next to grazing. mu = edge +- t^2 takes the root away, and
-// panels that halve towards the edge follow the fall.
+// panels that halve towards the edge follow the fall. Strong absorption leaves no edge, but a
+// dip next to grazing, at mu = 1 / k.
 double fresnel_mean(double n, double k) {
-  const double edge = n < 1.0 ? std::sqrt((1.0 - n) * (1.0 + n)) : 0.0;
+  const double edge = n < 1.0 && k < 1.0 ? std::sqrt((1.0 - n) * (1.0 + n)) : 0.0;
   const auto side = [&](double sign, double width) {
     double sum = 0.0;
     double right = std::sqrt(width);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "material/error.h"
-#include "scene/modules.h"
 
 namespace atrium::scene {
 namespace fs = std::filesystem;
