@@ -105,7 +105,8 @@ plot::Chart angle_chart(const DataSheet& s) {
   chart.x_title = "angle of incidence / deg";
   chart.y_title = "F, linear RGB under D65";
   chart.x_range = plot::Range{0.0, 90.0};
-  chart.legend = plot::LegendPlace::TopLeft;
+  chart.y_range = plot::Range{0.0, 1.1};
+  chart.legend = plot::LegendPlace::BottomRight;
   constexpr const char* kNames[] = {"R", "G", "B"};
   const plot::Color colors[] = {{0.8, 0.1, 0.1}, {0.0, 0.55, 0.2}, {0.1, 0.2, 0.8}};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -125,6 +126,7 @@ void write_picture(const DataSheet& s, const std::string& file) {
   plot::Chart index = spectral_chart(s, "complex index n + i k");
   index.curves = {spectral_curve(s, "n", &DataSheet::Sample::n),
                   spectral_curve(s, "k", &DataSheet::Sample::k)};
+  index.legend = plot::LegendPlace::TopLeft;
   plot::Chart reflectance = spectral_chart(s, "reflectance");
   reflectance.y_title = "F";
   reflectance.curves = {spectral_curve(s, "F(0)", &DataSheet::Sample::F0),

@@ -31,6 +31,7 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
     events_ = kPaneReflection | kPaneStraight;
     return;
   }
+  fresnel_ = m.fresnel ? &(*m.fresnel)[inside ? 1 : 0] : nullptr;
   k_rg_ = static_cast<float>(s.k_rg);
   k_tp_rg_ = solid ? static_cast<float>(s.k_tp_rg) : 0.0f;
   coupled_ = m.coupled.get();
@@ -50,6 +51,10 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
         }
       }
   }
+  if (m.lobe) {
+    use_comparison_lobe(m, body_factor, roughness_factor);
+    return;
+  }
   if (!diffuse_reflection_.is_zero()) events_ |= kDiffuseReflection;
   if (!diffuse_transmission_.is_zero()) events_ |= kDiffuseTransmission;
 
@@ -57,6 +62,9 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
   if (facets_ && roughness_factor != 1.0f)
     facets_.emplace(
         std::min(facets_->c() / std::max(roughness_factor * roughness_factor, 1e-6f), kSmoothest));
+  smith_ = m.smith.get();
+  interreflection_ = m.interreflection.get();
+  interreflected_ = m.interreflected;
   coherent_ = facets_ && s.sigma.has_value();
   coherent_g_ =
       inside ? m.coherent_g * m.n * m.n : m.coherent_g;  // phases are those of the viewer's medium
@@ -72,10 +80,49 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
   }
 }
 
+// A model of the literature: of a body it takes the diffuse part's place, else the interface's.
+template <int N>
+void Bsdf<N>::use_comparison_lobe(const ResolvedMaterial<N>& m, const Spectrum<N>& body_factor,
+                                  float roughness_factor) {
+  const Material& s = *m.source;
+  lobe_ = m.lobe.get();
+  if (is_body(s.lobe)) {
+    diffuse_reflection_ = {};
+    lobe_weight_ = body_factor * static_cast<float>(s.k_df);
+  } else {
+    lobe_weight_ = reflectance_factor_ * k_rg_;
+  }
+  if (roughness_factor != 1.0f)
+    if (const auto* ggx = std::get_if<GgxLobe<N>>(lobe_)) {
+      GgxLobe<N> own = *ggx;
+      own.alpha = std::clamp(own.alpha * roughness_factor * roughness_factor, 1e-4f, 1.0f);
+      textured_lobe_ = own;
+    }
+  if (!diffuse_reflection_.is_zero()) events_ |= kDiffuseReflection;
+  if (!diffuse_transmission_.is_zero()) events_ |= kDiffuseTransmission;
+  if (lobe_weight_.is_zero()) return;
+  std::visit(
+      [&](const auto& l) {
+        events_ |= (l.has_lobe() ? kLobeReflection : 0U) | (l.has_mirror() ? kMirror : 0U);
+      },
+      *lobe_);
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::comparison_albedo(const Vec3f& wo, std::uint32_t events) const {
+  Spectrum<N> a;
+  std::visit(
+      [&](const auto& l) {
+        if ((events & kLobeReflection) != 0) a += l.albedo(wo);
+        if ((events & kMirror) != 0) a += l.mirror(wo.z());
+      },
+      comparison());
+  return a * lobe_weight_;
+}
+
 template <int N>
 Spectrum<N> Bsdf<N>::fresnel(float c) const {
-  return Spectrum<N>::generate([&](int i) { return material::fresnel(c, eta_[i], k_[i]).mean(); }) *
-         reflectance_factor_;
+  return (*fresnel_)(c)*reflectance_factor_;
 }
 
 template <int N>
@@ -127,6 +174,8 @@ Spectrum<N> Bsdf<N>::incoherent_share(float mu_o, float mu_i) const {
 
 template <int N>
 Spectrum<N> Bsdf<N>::mirror_weight(float mu) const {
+  if (lobe_ != nullptr)
+    return std::visit([&](const auto& l) { return l.mirror(mu); }, comparison()) * lobe_weight_;
   return fresnel(mu) * coherent_reflection(mu) * k_rg_;
 }
 
@@ -139,36 +188,48 @@ Spectrum<N> Bsdf<N>::refraction_weight(float mu, Transport transport) const {
 }
 
 template <int N>
-Spectrum<N> Bsdf<N>::lobe_reflection(const Vec3f& wo, const Vec3f& wi) const {
-  const Vec3f h = (wo + wi).normalized();
-  const float bh = wo.dot(h);
-  const float g = g_vcavity(wi.z(), wo.z(), h.z(), bh, bh);
-  const float d = facets_->density(h) * g * k_rg_ / (4.0f * wi.z() * wo.z());
-  if (!(d > 0.0f)) return {};
-  return fresnel(bh) * d * incoherent_share(wo.z(), wi.z());
+float Bsdf<N>::masking(const Vec3f& wo, const Vec3f& wi, float nh, float lh, float bh) const {
+  if (smith_ == nullptr) return g_vcavity(std::abs(wi.z()), wo.z(), nh, lh, bh);
+  return wi.z() > 0.0f ? smith_->reflection(wo.z(), wi.z()) : smith_->transmission(wo.z(), wi.z());
+}
+
+// Kulla & Conty 2017: gives back what one scattering loses, spread like the losses themselves.
+template <int N>
+Spectrum<N> Bsdf<N>::interreflection(float mu_o, float mu_i) const {
+  const float mean = interreflection_->mean_loss();
+  if (!(mean > 1e-7f)) return {};
+  return interreflected_ *
+         (interreflection_->loss(mu_o) * interreflection_->loss(mu_i) * kInvPi / mean);
 }
 
 template <int N>
-std::optional<Vec3f> Bsdf<N>::facet_of_transmission(const Vec3f& wo, const Vec3f& wi) const {
-  const Vec3f m = -(wo + eta_mean_ * wi);
-  const float length = m.norm();
-  if (!(length > 1e-7f)) return std::nullopt;
-  const Vec3f h = (eta_mean_ > 1.0f ? m : Vec3f(-m)) / length;
-  if (!(h.dot(wo) > 0.0f) || !(h.dot(wi) < 0.0f) || !(h.z() > 0.0f)) return std::nullopt;
-  return h;
+float Bsdf<N>::interreflection_probability(float mu) const {
+  return interreflection_ != nullptr ? interreflection_->loss(mu) : 0.0f;
+}
+
+template <int N>
+Spectrum<N> Bsdf<N>::lobe_reflection(const Vec3f& wo, const Vec3f& wi) const {
+  if (lobe_ != nullptr)
+    return std::visit([&](const auto& l) { return l.eval(wo, wi); }, comparison()) * lobe_weight_;
+  const Vec3f q = wo + wi;
+  const float length = q.norm();
+  const float bh = std::min(0.5f * length, 1.0f);
+  const float g = masking(wo, wi, q.z() / length, bh, bh);
+  Spectrum<N> f = fresnel(bh) * (facets_->density(q) * g / (4.0f * wi.z() * wo.z()));
+  if (interreflection_ != nullptr) f += interreflection(wo.z(), wi.z()) * reflectance_factor_;
+  return f * k_rg_ * incoherent_share(wo.z(), wi.z());
 }
 
 template <int N>
 Spectrum<N> Bsdf<N>::lobe_transmission(const Vec3f& wo, const Vec3f& wi,
                                        Transport transport) const {
-  const auto h = facet_of_transmission(wo, wi);
+  const auto h = refracting_facet<float>(wi, wo, eta_mean_);
   if (!h) return {};
   const float bh = wo.dot(*h);
   const float lh = wi.dot(*h);
-  const float denominator = eta_mean_ * lh + bh;
-  const float g = g_vcavity(-wi.z(), wo.z(), h->z(), -lh, bh);
-  float scale = -lh * bh / (-wi.z() * wo.z()) * facets_->density(*h) * g * k_tp_rg_ /
-                (denominator * denominator);
+  const float g = masking(wo, wi, h->z(), -lh, bh);
+  float scale =
+      refraction_factor(wi.z(), wo.z(), lh, bh, eta_mean_) * facets_->density(*h) * g * k_tp_rg_;
   if (!(scale > 0.0f)) return {};
   if (transport == Transport::Flux) scale *= eta_mean_ * eta_mean_;
   return (Spectrum<N>::one() - fresnel(bh)) * tint_ * incoherent_share(wo.z(), wi.z()) * scale;
@@ -201,7 +262,11 @@ typename Bsdf<N>::Choice Bsdf<N>::choose(const Vec3f& wo, std::uint32_t events) 
   const float mu = wo.z();
   if ((events & kDiffuseReflection) != 0) c.diffuse_reflection = diffuse_reflectance(wo).mean();
   if ((events & kDiffuseTransmission) != 0) c.diffuse_transmission = diffuse_transmission_.mean();
-  if ((events & (kLobeEvents | kMirror | kRefraction)) != 0) {
+  if (lobe_ != nullptr) {
+    if ((events & kLobeReflection) != 0)
+      c.lobe = std::max(comparison_albedo(wo, kLobeReflection).mean(), 0.02f);
+    if ((events & kMirror) != 0) c.mirror = mirror_weight(mu).mean();
+  } else if ((events & (kLobeEvents | kMirror | kRefraction)) != 0) {
     const Spectrum<N> f = fresnel(mu);
     const float reflected = k_rg_ * f.mean();
     const float transmitted = k_tp_rg_ * ((Spectrum<N>::one() - f) * tint_).mean();
@@ -245,12 +310,16 @@ template <int N>
 float Bsdf<N>::lobe_pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const {
   if (wi.z() > 0.0f) {
     if (!has(events & kLobeReflection)) return 0.0f;
-    const Vec3f h = (wo + wi).normalized();
-    const float bh = wo.dot(h);
-    return bh > 0.0f ? facets_->pdf(h) / (4.0f * bh) * reflect_probability(bh, events) : 0.0f;
+    if (lobe_ != nullptr)
+      return std::visit([&](const auto& l) { return l.pdf(wo, wi); }, comparison());
+    const Vec3f q = wo + wi;
+    const float bh = 0.5f * q.norm();
+    const float facet = facets_->pdf(q) / (4.0f * bh) * reflect_probability(bh, events);
+    const float several = interreflection_probability(wo.z());
+    return facet + several * (wi.z() * kInvPi - facet);
   }
   if (!has(events & kLobeTransmission)) return 0.0f;
-  const auto h = facet_of_transmission(wo, wi);
+  const auto h = refracting_facet<float>(wi, wo, eta_mean_);
   if (!h) return 0.0f;
   const float bh = wo.dot(*h);
   const float lh = wi.dot(*h);
@@ -276,6 +345,11 @@ float Bsdf<N>::pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const
 template <int N>
 std::optional<Vec3f> Bsdf<N>::sample_lobe(const Vec3f& wo, float u_choice, const Vec2f& u,
                                           std::uint32_t events) const {
+  if (lobe_ != nullptr)
+    return std::visit([&](const auto& l) { return l.sample(wo, u); }, comparison());
+  const float several = interreflection_probability(wo.z());
+  if (u_choice < several) return sample_cosine_hemisphere(u);
+  u_choice = (u_choice - several) / (1.0f - several);
   const Vec3f h = facets_->sample(u);
   const float bh = wo.dot(h);
   if (!(bh > 0.0f)) return std::nullopt;
@@ -373,6 +447,7 @@ Spectrum<N> Bsdf<N>::albedo(const Vec3f& wo, std::uint32_t events) const {
   events &= events_;
   if ((events & kDiffuseReflection) != 0) a += diffuse_reflectance(wo);
   if ((events & kDiffuseTransmission) != 0) a += diffuse_transmission_;
+  if (lobe_ != nullptr) return a + comparison_albedo(wo, events);
   if ((events & (kLobeReflection | kMirror)) != 0) a += fresnel(wo.z()) * k_rg_;
   if ((events & (kLobeTransmission | kRefraction)) != 0)
     a += (Spectrum<N>::one() - fresnel(wo.z())) * tint_ * k_tp_rg_;

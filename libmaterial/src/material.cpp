@@ -61,11 +61,63 @@ void check_interface(const Checker& check, const Material& m) {
   check.require((m.c >= 0.0 && m.c <= kRoughest) || m.c == kInf, "c", m.c,
                 "in [0, 1e6] or infinite (smooth)");
   if (m.sigma) check.not_negative("sigma", *m.sigma);
+  check.share("fresnel_error", m.fresnel_error);
+  if (m.masking == Masking::None)
+    check.refuse("masking must be vcavity or smith (without it a surface gives more than it gets)");
+  const bool tabulated = m.masking != Masking::VCavity || m.facet_interreflection;
+  if (tabulated && m.roughness_texture.texture.valid())
+    check.refuse("a roughness_texture works with V-cavities and without facet_interreflection");
+  if (m.facet_interreflection && m.medium != Material::Medium::Opaque)
+    check.refuse("facet_interreflection is for opaque media");
   if (m.medium == Material::Medium::Pane) {
     check.require(min_value(m.n) >= 1.0, "n", min_value(m.n), "at least 1 for a pane");
     check.require(m.pane_thickness > 0.0 && m.pane_thickness < kInf, "pane_thickness",
                   m.pane_thickness, "above 0 and finite");
   }
+}
+
+struct CheckLobe {
+  const Checker& check;
+  void operator()(const FacetModel&) const {}
+  void operator()(const PhongModel& l) const { exponent(l.exponent); }
+  void operator()(const BlinnPhongModel& l) const { exponent(l.exponent); }
+  void operator()(const CookTorranceModel& l) const {
+    check.require(l.m >= 1e-6 && l.m <= 100.0, "lobe m", l.m, "in [1e-6, 100]");
+  }
+  void operator()(const HeModel& l) const {
+    check.not_negative("lobe sigma", l.sigma);
+    check.require(l.tau > 0.0 && l.tau < kInf, "lobe tau", l.tau, "above 0 and finite");
+  }
+  void operator()(const OrenNayarModel& l) const {
+    check.require(l.s >= 0.0 && l.s <= 1.0, "lobe s", l.s, "in [0, 1]");
+  }
+  void operator()(const HanrahanKruegerModel& l) const {
+    check.require(l.depth >= 0.0, "lobe depth", l.depth, "at least 0");
+    check.require(l.g > -1.0 && l.g < 1.0, "lobe g", l.g, "in (-1, 1)");
+  }
+  void operator()(const SchlickModel& l) const {
+    check.require(l.r >= 0.0 && l.r <= 1.0, "lobe r", l.r, "in [0, 1]");
+    check.require(l.p > 0.0 && l.p <= 1.0, "lobe p", l.p, "in (0, 1]");
+  }
+  void operator()(const GgxModel& l) const {
+    check.require(l.alpha >= 1e-4 && l.alpha <= 1.0, "lobe alpha", l.alpha, "in [1e-4, 1]");
+  }
+  void exponent(double p) const {
+    check.require(p >= 0.0 && p <= 1e8, "lobe exponent", p, "in [0, 1e8]");
+  }
+};
+
+void check_lobe(const Checker& check, const Material& m) {
+  std::visit(CheckLobe{check}, m.lobe);
+  if (m.facets()) return;
+  if (m.medium != Material::Medium::Opaque || m.combination != Material::Combination::Convex)
+    check.refuse("a lobe of the literature is for an opaque, convex material");
+  if (m.sigma || !m.smooth() || m.facet_interreflection)
+    check.refuse("c, sigma and facet_interreflection belong to lobe: facets");
+  if (is_body(m.lobe) && m.k_rg > 0.0)
+    check.refuse("k_rg must be 0 for this lobe, which is a body's (weight k_df)");
+  if (m.roughness_texture.texture.valid() && !std::holds_alternative<GgxModel>(m.lobe))
+    check.refuse("a roughness_texture works with the lobes facets and ggx");
 }
 
 void check_weights(const Checker& check, const Material& m) {
@@ -103,7 +155,7 @@ void for_each_used_spectrum(const Material& m, const MaterialTraits& t, F&& f) {
     f(m.n);
     f(m.kappa);
   }
-  if (t.diffuse_reflection && m.body_reflectance) f(*m.body_reflectance);
+  if ((t.diffuse_reflection || is_body(m.lobe)) && m.body_reflectance) f(*m.body_reflectance);
   if (t.diffuse_transmission && m.body_transmittance) f(*m.body_transmittance);
   if (t.transmits || t.pane) {
     f(m.transmission_tint);
@@ -134,6 +186,7 @@ void validate(const Material& m, const std::string& where) {
   const Checker check(where);
   check_interface(check, m);
   check_weights(check, m);
+  check_lobe(check, m);
   if (m.body_reflectance) check.share("body_reflectance", *m.body_reflectance);
   if (m.body_transmittance) check.share("body_transmittance", *m.body_transmittance);
   check.share("transmission_tint", m.transmission_tint);
@@ -164,10 +217,16 @@ MaterialTraits traits(const Material& m) {
     };
     t.diffuse_reflection = (coupled || m.k_df > 0.0) && scatters(m.body_reflectance);
     t.diffuse_transmission = !coupled && m.k_tp_df > 0.0 && scatters(m.body_transmittance);
-    const bool dirac = m.smooth() || m.sigma.has_value();
+    const bool dirac = m.facets() && (m.smooth() || m.sigma.has_value());
     t.mirror = m.k_rg > 0.0 && dirac && !matched;
     t.transmits = m.medium == Material::Medium::Solid && m.k_tp_rg > 0.0;
     t.rough = !m.smooth() && !matched && (m.k_rg > 0.0 || t.transmits);
+    if (!m.facets()) {
+      const bool body = is_body(m.lobe);
+      t.rough = body ? t.diffuse_reflection : m.k_rg > 0.0;
+      if (body) t.diffuse_reflection = false;
+      t.mirror = m.k_rg > 0.0 && has_mirror(m.lobe);
+    }
     t.coupled = coupled && m.k_rg > 0.0 && t.diffuse_reflection;
   }
   t.emissive = m.emissive();
@@ -179,6 +238,9 @@ MaterialTraits traits(const Material& m) {
     t.chromatic |= !is_achromatic(v);
     t.wavelength_data |= is_sampled(v);
   });
+  // Wave optics: the share of the mirror depends on the wavelength, whatever the spectra are.
+  const auto* he = std::get_if<HeModel>(&m.lobe);
+  t.chromatic |= t.rough && ((m.sigma && *m.sigma > 0.0) || (he != nullptr && he->sigma > 0.0));
   return t;
 }
 

@@ -246,6 +246,8 @@ std::optional<Vec3f> PaperSurface<N>::transmitted(const Vec3f& b) const {
 }
 
 Material paper_transport(const Material& m) {
+  if (!m.facets())
+    throw Error("material '" + m.name + "': paper mode knows the paper's own lobe only (facets)");
   Material t = m;
   t.c = std::numeric_limits<double>::infinity();
   t.sigma.reset();

@@ -2,6 +2,8 @@
 
 #include "material/bsdf.h"
 #include "material/fresnel.h"
+#include "material/interface_albedo.h"
+#include "resolve_lobe.h"
 
 namespace atrium::material {
 namespace {
@@ -72,6 +74,17 @@ void resolve_index(ResolvedMaterial<N>& r, const Material& m, const SpectralBasi
     const float n = r.n[i], k = r.k[i];
     r.reflectance_zero[i] = ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
   }
+}
+
+template <int N>
+void add_interreflection(ResolvedMaterial<N>& r, const Material& m) {
+  auto table = std::make_shared<Interreflection>(m.c, m.masking);
+  const double mean_albedo = 1.0 - static_cast<double>(table->mean_loss());
+  for (int i = 0; i < N; ++i) {
+    const double f = fresnel_mean(static_cast<double>(r.n[i]), static_cast<double>(r.k[i]));
+    r.interreflected[i] = static_cast<float>(interreflected_fresnel(f, mean_albedo));
+  }
+  r.interreflection = std::move(table);
 }
 
 // Directional albedo of the interface, mirror part included, by a fixed low-discrepancy rule.
@@ -150,6 +163,15 @@ ResolvedMaterial<N> resolve_material(const Material& m, const SpectralBasis& bas
       r.coherent_g[i] = static_cast<float>(std::min(x * x, 1e30));
     }
   }
+  if (m.medium != Material::Medium::Pane && m.facets() && (m.k_rg > 0.0 || m.k_tp_rg > 0.0)) {
+    const auto inverse = Spectrum<N>::generate([&](int i) { return 1.0f / r.n[i]; });
+    const auto bound = static_cast<float>(m.fresnel_error);
+    r.fresnel = std::make_shared<const std::array<FresnelTerm<N>, 2>>(std::array{
+        FresnelTerm<N>(r.n, r.k, bound), FresnelTerm<N>(inverse, Spectrum<N>::zero(), bound)});
+  }
+  r.lobe = resolve_lobe(r, m, basis);
+  if (r.facets && m.masking == Masking::Smith) r.smith = std::make_shared<SmithTable>(m.c);
+  if (r.facets && m.facet_interreflection && m.k_rg > 0.0) add_interreflection(r, m);
   if (coupled && r.body_reflectance.max() > 0.0f && m.k_rg > 0.0) r.coupled = tabulate_body(r);
   return r;
 }

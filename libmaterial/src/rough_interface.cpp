@@ -47,8 +47,7 @@ double btdf_specular(const Vec3d& l, const Vec3d& b, const GaussianFacets<double
   // next to total reflection.
   const double f =
       (eta > 1.0 ? fresnel_dielectric(bh, eta) : fresnel_dielectric(-lh, 1.0 / eta)).mean();
-  return (1.0 - f) * facets.density(*h) * g *
-         refraction_factor(l.z(), b.z(), lh, bh, eta);
+  return (1.0 - f) * facets.density(*h) * g * refraction_factor(l.z(), b.z(), lh, bh, eta);
 }
 
 double brdf_convex(const Vec3d& l, const Vec3d& b, const GaussianFacets<double>& facets, double n,

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "material/frame.h"
+#include "material/fresnel_forms.h"
 #include "material/material.h"
 #include "material/microfacet.h"
+#include "material/models/lobes.h"
 #include "material/spectral_basis.h"
 
 namespace atrium::material {
@@ -68,13 +70,31 @@ struct CoupledBody {
   }
 };
 
+/// What facets lose to one scattering, 1 - E(mu) for F = 1, and what of it comes back.
+class Interreflection {
+ public:
+  Interreflection(double c, Masking masking);
+  /// 1 - E(mu).
+  [[nodiscard]] float loss(float mu) const;
+  /// 2 * integral of loss mu dmu, of the table as it is interpolated.
+  [[nodiscard]] float mean_loss() const { return mean_; }
+
+ private:
+  static constexpr int kSteps = 64;
+  float width_, scale_;  // of w = mu / (mu + width): fine towards grazing
+  float mean_ = 0.0f;
+  std::array<float, kSteps + 1> loss_{};
+};
+
 /// A material with its spectra turned into lanes; one per material of a scene.
 template <int N>
 struct ResolvedMaterial {
   const Material* source = nullptr;
   MaterialTraits traits;
-  Spectrum<N> n, k;              ///< absolute index and n kappa per lane
-  float n_mean = 1.5f;           ///< steers refracted directions
+  Spectrum<N> n, k;     ///< absolute index and n kappa per lane
+  float n_mean = 1.5f;  ///< steers refracted directions
+  /// F as seen from outside and from inside; forms by Material::fresnel_error.
+  std::shared_ptr<const std::array<FresnelTerm<N>, 2>> fresnel;
   Spectrum<N> reflectance_zero;  ///< F(0) against air
   Spectrum<N> body_reflectance;  ///< rho_d or rho_b before textures
   Spectrum<N> body_transmittance;
@@ -85,6 +105,10 @@ struct ResolvedMaterial {
   std::optional<GaussianFacets<float>> facets;  ///< rough lobe
   Spectrum<N> coherent_g;  ///< (4 pi sigma / lambda)^2, if the source has sigma
   std::shared_ptr<const CoupledBody<N>> coupled;  ///< shared by copies of the same material
+  std::shared_ptr<const SmithTable> smith;        ///< Masking::Smith
+  std::shared_ptr<const Interreflection> interreflection;
+  Spectrum<N> interreflected;  ///< F_ms: reflectance of light that met several facets
+  std::shared_ptr<const ComparisonLobe<N>> lobe;  ///< stands in the place of the facets
 };
 template <int N>
 [[nodiscard]] ResolvedMaterial<N> resolve_material(const Material& material,
@@ -152,7 +176,15 @@ class Bsdf {
   [[nodiscard]] Spectrum<N> lobe_reflection(const Vec3f& wo, const Vec3f& wi) const;
   [[nodiscard]] Spectrum<N> lobe_transmission(const Vec3f& wo, const Vec3f& wi,
                                               Transport transport) const;
-  [[nodiscard]] std::optional<Vec3f> facet_of_transmission(const Vec3f& wo, const Vec3f& wi) const;
+  [[nodiscard]] float masking(const Vec3f& wo, const Vec3f& wi, float nh, float lh, float bh) const;
+  [[nodiscard]] Spectrum<N> interreflection(float mu_o, float mu_i) const;
+  [[nodiscard]] float interreflection_probability(float mu) const;
+  void use_comparison_lobe(const ResolvedMaterial<N>& material, const Spectrum<N>& body_factor,
+                           float roughness_factor);
+  [[nodiscard]] const ComparisonLobe<N>& comparison() const {
+    return textured_lobe_ ? *textured_lobe_ : *lobe_;
+  }
+  [[nodiscard]] Spectrum<N> comparison_albedo(const Vec3f& wo, std::uint32_t events) const;
   [[nodiscard]] float reflect_probability(float cos_facet, std::uint32_t events) const;
   [[nodiscard]] float lobe_pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) const;
   [[nodiscard]] float pdf(const Choice& choice, const Vec3f& wo, const Vec3f& wi,
@@ -175,6 +207,13 @@ class Bsdf {
   bool coherent_ = false;   ///< sigma is given: lobe and mirror share the light
   std::optional<GaussianFacets<float>> facets_;
   const CoupledBody<N>* coupled_ = nullptr;
+  const FresnelTerm<N>* fresnel_ = nullptr;
+  const ComparisonLobe<N>* lobe_ = nullptr;
+  std::optional<ComparisonLobe<N>> textured_lobe_;  ///< lobe_ with this point's roughness
+  Spectrum<N> lobe_weight_;
+  const SmithTable* smith_ = nullptr;
+  const Interreflection* interreflection_ = nullptr;
+  Spectrum<N> interreflected_;
 };
 
 extern template class Bsdf<1>;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "material/lobe_model.h"
+#include "material/rough_interface.h"
 #include "material/spectral_basis.h"
 #include "material/spectral_value.h"
 #include "material/texture.h"
@@ -59,6 +61,14 @@ struct Material {
   /// rms height [m]; if set the lobe keeps a mirror part (coherent factor Gamma).
   std::optional<double> sigma;
   TextureSlot roughness_texture;  ///< multiplies the glTF roughness sqrt(1/c), channel as given
+  Masking masking = Masking::VCavity;  ///< or Smith
+  /// Adds what facets send to one another, so that a rough conductor with F = 1 is white. Opaque
+  /// only; excludes a roughness_texture (so does Masking::Smith).
+  bool facet_interreflection = false;
+  /// Largest absolute error of F that a faster form may have; 0: always exact.
+  double fresnel_error = 1e-3;
+
+  LobeModel lobe;  ///< the paper's facets, or a comparison model instead of them
 
   // Weights in [0, 1]. Convex: k_df + k_rg = 1 and k_tp_df + k_tp_rg = 1 in the paper; less absorbs
   // the rest, more is refused.
@@ -98,6 +108,7 @@ struct Material {
   double ray_c1 = 0.0;
   double ray_c2 = 1.0;
 
+  [[nodiscard]] bool facets() const { return std::holds_alternative<FacetModel>(lobe); }
   [[nodiscard]] bool smooth() const { return !(c < std::numeric_limits<double>::infinity()); }
   [[nodiscard]] bool emissive() const { return max_value(emission) > 0.0; }
 };

@@ -24,17 +24,17 @@ Spectrum<N> He1991Lobe<N>::eval(const Vec3f& wo, const Vec3f& wi) const {
                             correlation);
   if (!geometry.above) return {};
   return Spectrum<N>::generate([&](int i) {
-    const double f = he1991(geometry, correlation,
-                            static_cast<double>(lambda[static_cast<std::size_t>(i)]),
-                            static_cast<double>(n[i]), static_cast<double>(k[i]))
-                         .dd;
+    const double f =
+        he1991(geometry, correlation, static_cast<double>(lambda[static_cast<std::size_t>(i)]),
+               static_cast<double>(n[i]), static_cast<double>(k[i]))
+            .dd;
     return std::min(f, static_cast<double>(std::numeric_limits<float>::max()));
   });
 }
 
 // D is a Poisson mixture of Gaussians in (q_x, q_y): the one of order m has the variance
-// m (lambda / (pi tau))^2, and slopes are q_xy / q_z. Near grazing angles the light comes from above
-// the mirror direction, by about the lobe's slope itself: q_z = 2 mu + slope, by iteration.
+// m (lambda / (pi tau))^2, and slopes are q_xy / q_z. Near grazing angles the light comes from
+// above the mirror direction, by about the lobe's slope itself: q_z = 2 mu + slope, by iteration.
 template <int N>
 float He1991Lobe<N>::lobe_slope(float mu) const {
   const double cosine = static_cast<double>(mu), rms = static_cast<double>(sigma0);
@@ -86,9 +86,8 @@ Spectrum<N> He1991Lobe<N>::mirror(float mu) const {
 
 template <int N>
 Spectrum<N> He1991Lobe<N>::albedo(const Vec3f& wo) const {
-  const HeGeometry geometry =
-      mirror_geometry(static_cast<double>(wo.z()), static_cast<double>(sigma0),
-                      static_cast<double>(tau));
+  const HeGeometry geometry = mirror_geometry(
+      static_cast<double>(wo.z()), static_cast<double>(sigma0), static_cast<double>(tau));
   return Spectrum<N>::generate([&](int i) {
     const double height = 2.0 * std::numbers::pi * geometry.sigma /
                           static_cast<double>(lambda[static_cast<std::size_t>(i)]);

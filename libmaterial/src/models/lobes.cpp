@@ -101,8 +101,8 @@ template <int N>
 float CookTorranceLobe<N>::pdf(const Vec3f& wo, const Vec3f& wi) const {
   if (!above(wo, wi)) return 0.0f;
   const Halfway q(wi, wo);
-  return detail::mirrored_density(
-      beckmann_density(q.tan2_delta(), m) * q.z / std::sqrt(q.norm2), q);
+  return detail::mirrored_density(beckmann_density(q.tan2_delta(), m) * q.z / std::sqrt(q.norm2),
+                                  q);
 }
 
 template <int N>
@@ -178,9 +178,8 @@ std::optional<Vec3f> OrenNayarLobe<N>::sample(const Vec3f& wo, const Vec2f& u) c
   if (!above(wo)) return std::nullopt;
   const float share = oren_nayar_cosine_share(s);
   return detail::if_above(
-      u.x() < share
-          ? sample_cosine_hemisphere({u.x() / share, u.y()})
-          : detail::sample_uniform_hemisphere({(u.x() - share) / (1.0f - share), u.y()}));
+      u.x() < share ? sample_cosine_hemisphere({u.x() / share, u.y()})
+                    : detail::sample_uniform_hemisphere({(u.x() - share) / (1.0f - share), u.y()}));
 }
 
 template <int N>
@@ -214,8 +213,8 @@ std::optional<Vec3f> HanrahanKruegerLobe<N>::sample(const Vec3f& wo, const Vec2f
   // Inverse of the phase function's distribution; in double, since it divides by g.
   const double gd = static_cast<double>(g), ud = static_cast<double>(u.x());
   const double ratio = (1.0 - gd * gd) / (1.0 + gd - 2.0 * gd * ud);
-  const double cosine = std::abs(gd) < 1e-6 ? 1.0 - 2.0 * ud
-                                            : (1.0 + gd * gd - ratio * ratio) / (2.0 * gd);
+  const double cosine =
+      std::abs(gd) < 1e-6 ? 1.0 - 2.0 * ud : (1.0 + gd * gd - ratio * ratio) / (2.0 * gd);
   const float c = static_cast<float>(std::clamp(cosine, -1.0, 1.0));
   const float sine2 = static_cast<float>(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
   const Vec3f v = Frame(down).to_world(detail::at_azimuth(sine2, c, u.y())).normalized();
@@ -243,7 +242,7 @@ float schlick_facet_share(float r) { return r < 0.5f ? 0.5f : 2.0f * r * (1.0f -
 // bounds A by their mean (1 + A^2)/2.
 float schlick_facet_density(const Halfway& q, float r, float p) {
   const float z = (r * q.z * q.z + q.xy2) / q.norm2;
-  const float A2 = q.xy2 > 0.0f ? p * q.xy2 / (p * q.y * (p * q.y) + q.x * q.x) : p;
+  const float A2 = detail::schlick1994_azimuth(q, p);
   return r / (z * z) * q.z / std::sqrt(q.norm2) * kInvPiF * 0.5f * (1.0f + A2);
 }
 

@@ -99,6 +99,76 @@ void read_roughness(const YamlMap& map, Material& m) {
   m.c = height > 0.0 ? length / (2.0 * height) : std::numeric_limits<double>::infinity();
 }
 
+// lobe: facets | {model: {parameters}}, the models of the literature beside the paper's.
+material::LobeModel read_lobe(const YamlView& view) {
+  using namespace material;
+  if (!view.is_map()) {
+    view.choice({"facets"});
+    return FacetModel{};
+  }
+  const YamlMap map = view.map("lobe", {"phong", "blinn_phong", "cook_torrance", "he", "oren_nayar",
+                                        "hanrahan_krueger", "schlick", "ggx"});
+  const std::string model = map.one_of({"phong", "blinn_phong", "cook_torrance", "he", "oren_nayar",
+                                        "hanrahan_krueger", "schlick", "ggx"});
+  const YamlView given = map.get(model);
+  const auto parameters = [&](std::initializer_list<std::string_view> keys) {
+    return given.map(model, keys);
+  };
+  const auto set = [](const YamlMap& m, const char* key, double& value) {
+    if (const auto v = m.find(key)) value = v->number();
+  };
+  if (model == "phong" || model == "blinn_phong") {
+    double exponent = PhongModel{}.exponent;
+    set(parameters({"exponent"}), "exponent", exponent);
+    if (model == "phong") return PhongModel{exponent};
+    return BlinnPhongModel{exponent};
+  }
+  if (model == "cook_torrance") {
+    CookTorranceModel lobe;
+    set(parameters({"m"}), "m", lobe.m);
+    return lobe;
+  }
+  if (model == "he") {
+    HeModel lobe;
+    const YamlMap p = parameters({"sigma", "tau"});
+    lobe.sigma = p.get("sigma").number();
+    lobe.tau = p.get("tau").number();
+    return lobe;
+  }
+  if (model == "oren_nayar") {
+    OrenNayarModel lobe;
+    set(parameters({"s"}), "s", lobe.s);
+    return lobe;
+  }
+  if (model == "hanrahan_krueger") {
+    HanrahanKruegerModel lobe;
+    const YamlMap p = parameters({"depth", "g"});
+    set(p, "depth", lobe.depth);
+    set(p, "g", lobe.g);
+    return lobe;
+  }
+  if (model == "schlick") {
+    SchlickModel lobe;
+    const YamlMap p = parameters({"r", "p"});
+    set(p, "r", lobe.r);
+    set(p, "p", lobe.p);
+    return lobe;
+  }
+  GgxModel lobe;
+  set(parameters({"alpha"}), "alpha", lobe.alpha);
+  return lobe;
+}
+
+void read_facets(const YamlMap& map, Material& m) {
+  if (const auto v = map.find("masking")) {
+    m.masking = v->choice({"vcavity", "smith"}) == 0 ? material::Masking::VCavity
+                                                     : material::Masking::Smith;
+  }
+  if (const auto v = map.find("facet_interreflection")) m.facet_interreflection = v->boolean();
+  if (const auto v = map.find("fresnel_error")) m.fresnel_error = v->number(0.0, 1.0);
+  if (const auto v = map.find("lobe")) m.lobe = read_lobe(*v);
+}
+
 void read_emission(YamlScene& scene, const YamlView& view, MaterialId id, Material& m) {
   m.emission_spectral_watts = false;
   if (!view.is_map()) {
@@ -181,6 +251,10 @@ void read_material(YamlScene& scene, const std::string& name, const YamlView& vi
                                                            "c",
                                                            "sigma",
                                                            "tau",
+                                                           "masking",
+                                                           "facet_interreflection",
+                                                           "fresnel_error",
+                                                           "lobe",
                                                            "k_df",
                                                            "k_rg",
                                                            "k_tp_df",
@@ -220,6 +294,7 @@ void read_material(YamlScene& scene, const std::string& name, const YamlView& vi
   if (const auto v = map.find("ior")) read_refraction(scene, *v, m);
   read_weights(map, like.has_value(), m);
   read_roughness(map, m);
+  read_facets(map, m);
   read_body(scene, map, m);
   const MaterialId id(scene.model.materials.size());
   if (const auto v = map.find("emission")) read_emission(scene, *v, id, m);

@@ -434,7 +434,10 @@ TEST(MaterialQuery, NumbersRoundTrip) {
 
 TEST(MaterialQuery, TimeIsLinear) {
   std::string text = "[";
-  for (int i = 0; i < 20000; ++i) text += (i > 0 ? "," : "") + query("norm", R"("c": 1)");
+  for (int i = 0; i < 20000; ++i) {
+    if (i > 0) text += ',';
+    text += query("norm", R"("c": 1)");
+  }
   const std::string answers = answer_queries(text + "]");
   EXPECT_EQ(std::count(answers.begin(), answers.end(), '\n'), 20002);
 }

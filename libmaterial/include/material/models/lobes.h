@@ -177,12 +177,12 @@ struct Schlick1994Lobe {
   [[nodiscard]] Spectrum<N> albedo(const Vec3f& wo) const;
 };
 
-/// Each lane at its wavelength (a cost of 0.1 to 1 us per lane and eval for the sum). Sampled by
-/// facets of Beckmann densities, one of the lobe's own width about the mirror direction (the widest
-/// of the lanes') and one wider, and by cosine.
+/// Each lane at its wavelength (the sum costs some 25 to 100 exponentials per lane and eval).
+/// Sampled by visible facets of a GGX density of the lobe's slope (the widest of the lanes'), whose
+/// tails outlast those of every order of the sum, and by cosine (1 in 5).
 template <int N>
 struct He1991Lobe {
-  static constexpr float kLargestWeight = 12.0f;
+  static constexpr float kLargestWeight = 6.0f;
   Spectrum<N> diffuse;  ///< pi a
   Spectrum<N> n{1.5f}, k;
   std::array<float, N> lambda{};  ///< in the incident medium, unit of sigma0 and tau
@@ -196,7 +196,7 @@ struct He1991Lobe {
   [[nodiscard]] std::optional<Vec3f> sample(const Vec3f& wo, const Vec2f& u) const;
   [[nodiscard]] Spectrum<N> mirror(float mu) const;
   [[nodiscard]] Spectrum<N> albedo(const Vec3f& wo) const;
-  /// Slope of the Beckmann density that stands for the lobe seen under the cosine mu.
+  /// Slope of the facet density that stands for the lobe seen under the cosine mu.
   [[nodiscard]] float lobe_slope(float mu) const;
 };
 

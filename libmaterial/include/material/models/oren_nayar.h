@@ -14,7 +14,7 @@ void validate(const OrenNayarParameters& parameters);
 
 /// f = (rho/pi) [A + B max(0, cos psi) sin(alpha) tan(beta)] [1/sr], alpha and beta the larger and
 /// the smaller polar angle. Reciprocal. rho is a facet's reflectance: the albedo is smaller at
-/// normal incidence and may exceed rho (by up to 10 % for s = 1) towards grazing angles.
+/// normal incidence and may exceed rho slightly towards grazing angles (full: 1.05 rho, s = 0.3).
 /// Source: Oren & Nayar 1994, Eq. 30; MATERIAL_MODEL 9.4.
 template <class Real>
 [[nodiscard]] Real oren_nayar_qualitative(const Vec3<Real>& l, const Vec3<Real>& b,

@@ -30,6 +30,14 @@ struct Schlick1994 {
 
 namespace detail {
 
+/// A^2 = p / (p^2 - p^2 w^2 + w^2), w^2 = q_x^2 / (q_x^2 + q_y^2). At the pole, where the azimuth
+/// has no meaning, w = 1.
+template <class Real>
+[[nodiscard]] Real schlick1994_azimuth(const Halfway<Real>& q, Real p) {
+  if (!(p * p * q.xy2 > std::numeric_limits<Real>::min())) return p;
+  return p * q.xy2 / (p * q.y * (p * q.y) + q.x * q.x);
+}
+
 /// D_d of Schlick 1994: facets seen unobstructed plus the Lambertian rest.
 template <class Real>
 [[nodiscard]] Real schlick1994_lobe(Real nl, Real nb, const Halfway<Real>& q, Real r, Real p) {
@@ -39,17 +47,16 @@ template <class Real>
   const Real blocked = blocked_l + nl / den_l * blocked_b;
   const Real z = (r * q.z * q.z + q.xy2) / q.norm2;  // r t^2 + 1 - t^2
   const Real Z = r / (z * z);
-  // w^2 = q_x^2 / (q_x^2 + q_y^2); at the pole, where w has no meaning, w = 1.
-  const Real A =
-      q.xy2 > Real(0) ? std::sqrt(p * q.xy2 / (p * q.y * (p * q.y) + q.x * q.x)) : std::sqrt(p);
+  const Real A = std::sqrt(schlick1994_azimuth(q, p));
   return (Z * A / (Real(4) * den_l * den_b) + blocked) * std::numbers::inv_pi_v<Real>;
 }
 
 }  // namespace detail
 
 /// f = S_u [a/pi + b D_d], S_u = f0 + (1 - f0)(1 - b.h)^5, with the azimuth of h counted from x.
-/// Reciprocal. Albedo <= 1 for p = 1 within the model's fit (at most 1.0 on the tests' grid).
-/// r = 0 leaves the mirror only. Source: Schlick 1994; MATERIAL_MODEL 9.6.
+/// Reciprocal. Albedo <= 1 at normal incidence, but above 1 towards grazing angles (1.57 for F = 1,
+/// r = 0.3): G(l) G(b) Z A / (4 (n.l)(n.b)) is not normalised. r = 0 leaves the mirror only.
+/// Source: Schlick 1994; MATERIAL_MODEL 9.6.
 template <class Real>
 [[nodiscard]] Schlick1994<Real> schlick1994(const Vec3<Real>& l, const Vec3<Real>& b,
                                             Scalar<Real> f0, Scalar<Real> r, Scalar<Real> p) {

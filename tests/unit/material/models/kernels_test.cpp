@@ -178,8 +178,8 @@ void compare(double tolerance, Real tiny, int count, int grazing_decades) {
   }
 }
 
-TEST(ModelKernels, AgreeWithLongDoubleInDouble) { compare<double>(1e-12, 1e-100, 2000, 12); }
-TEST(ModelKernels, AgreeWithLongDoubleInFloat) { compare<float>(1e-5, 1e-12f, 2000, 6); }
+TEST(ModelKernels, AgreeWithLongDoubleInDouble) { compare<double>(1e-12, 1e-100, 800, 12); }
+TEST(ModelKernels, AgreeWithLongDoubleInFloat) { compare<float>(1e-5, 1e-12f, 800, 6); }
 
 TEST(ModelKernels, Reciprocal) {
   for (const Kernel<double>& kernel : kernels<double>()) {

@@ -17,7 +17,7 @@ using Rgb3 = Spectrum<3>;
 struct Case {
   std::string name;
   Lobe lobe;
-  double albedo_limit = 1.0;  ///< what the model promises; above 1 where it is only a fit
+  double albedo_limit = 1.0;  ///< above 1 where the model is only a fit: as documented
 };
 
 Rgb3 rgb(float a, float b, float c) {
@@ -47,25 +47,21 @@ std::vector<Case> cases() {
   for (const float s : {0.0f, 0.3f, 1.0f})
     for (const bool full : {false, true})
       add(full ? "oren_nayar full" : "oren_nayar", s,
-          OrenNayarLobe<3>{{}, rgb(1.0f, 0.5f, 0.1f), s, full}, 1.6);
+          OrenNayarLobe<3>{{}, rgb(1.0f, 0.5f, 0.1f), s, full}, 1.06);
   for (const float g : {-0.7f, 0.0f, 0.5f, 0.9f}) {
-    add("hanrahan_krueger", g,
-        HanrahanKruegerLobe<3>{{}, one, rgb(0.1f, 1.0f, 1e9f), 1.4f, g});
+    add("hanrahan_krueger", g, HanrahanKruegerLobe<3>{{}, one, rgb(0.1f, 1.0f, 1e9f), 1.4f, g});
     add("hanrahan_krueger n = 1", g,
         HanrahanKruegerLobe<3>{{}, one, rgb(0.1f, 1.0f, 1e9f), 1.0f, g});
   }
-  add("hanrahan_krueger n = 0.8", 0.2,
-      HanrahanKruegerLobe<3>{{}, one, one, 0.8f, 0.2f});
   for (const float r : {0.001f, 0.05f, 0.3f, 0.5f, 0.8f, 1.0f})
-    add("schlick1994", r, Schlick1994Lobe<3>{{}, one, r});
+    add("schlick1994", r, Schlick1994Lobe<3>{{}, one, r}, 1.6);
   add("schlick1994 p = 0.2, r", 0.2, Schlick1994Lobe<3>{{}, one, 0.2f, 0.2f}, 1.6);
-  for (const float sigma : {0.005f, 0.05f, 0.15f, 0.5f, 3.0f})
-    for (const float slope : {0.1f, 0.3f, 0.6f}) {
-      const float tau = std::max(1.0f, 2.0f * sigma / slope);
-      add("he sigma " + std::to_string(sigma) + " tau", tau,
-          He1991Lobe<3>{{}, one, metal, {0.65f, 0.55f, 0.45f}, sigma, tau},
-          1.15);
-    }
+  // sigma / lambda from smooth to geometric optics, correlation lengths from a wavelength on.
+  constexpr float he[][2] = {{0.005f, 1.0f}, {0.05f, 1.0f}, {0.15f, 3.0f}, {0.15f, 0.7f},
+                             {0.5f, 10.0f},  {0.5f, 2.0f},  {3.0f, 60.0f}, {3.0f, 10.0f}};
+  for (const auto& [sigma, tau] : he)
+    add("he sigma " + std::to_string(sigma) + " tau", static_cast<double>(tau),
+        He1991Lobe<3>{{}, one, metal, {0.65f, 0.55f, 0.45f}, sigma, tau}, 1.05);
   return all;
 }
 
@@ -90,28 +86,48 @@ Rgb3 mirror_of(const Lobe& lobe, float mu) {
   return std::visit([&](const auto& x) { return x.mirror(mu); }, lobe);
 }
 
-// Directions with solid angles: rings about the mirror direction of wo, their radii growing
-// geometrically, so that lobes of any width are resolved; those below the horizon left out.
+// Quadrature over the hemisphere for lobes of any width: rings about the mirror direction of wo,
+// radii growing geometrically, blended into a grid over the hemisphere that ends at the horizon.
 struct Cell {
   Vec3f wi;
   double solid_angle;
 };
-std::vector<Cell> around_mirror(const Vec3f& wo, int rings, int sectors) {
+double share_of_rings(double angle) {
+  const double x = angle / 0.12;
+  return 1.0 / (1.0 + x * x * x * x);
+}
+std::vector<Cell> hemisphere(const Vec3f& wo, int rings, int sectors) {
   std::vector<Cell> cells;
-  const Frame frame(Vec3f(-wo.x(), -wo.y(), wo.z()));
+  const Vec3f mirrored(-wo.x(), -wo.y(), wo.z());
+  const Frame frame(mirrored);
   const auto radius = [&](int i) {  // from 1e-5 to pi; the first ring is the cap
     return i == 0 ? 0.0 : 1e-5 * std::pow(kPi / 1e-5, static_cast<double>(i) / rings);
   };
   for (int i = 0; i < rings; ++i) {
     const double a = radius(i), b = radius(i + 1), middle = 0.5 * (a + b);
-    const double ring = 2.0 * std::sin(0.5 * (a + b)) * std::sin(0.5 * (b - a));  // cos a - cos b
+    const double ring = 2.0 * std::sin(middle) * std::sin(0.5 * (b - a));  // cos a - cos b
     for (int j = 0; j < sectors; ++j) {
       const double phi = 2.0 * kPi * (j + 0.5) / sectors;
       const Vec3f local = Vec3d(std::sin(middle) * std::cos(phi), std::sin(middle) * std::sin(phi),
                                 std::cos(middle))
                               .cast<float>();
       const Vec3f wi = frame.to_world(local).normalized();
-      if (wi.z() > 0.0f) cells.push_back({wi, ring * 2.0 * kPi / sectors});
+      if (wi.z() > 0.0f) cells.push_back({wi, share_of_rings(middle) * ring * 2.0 * kPi / sectors});
+    }
+  }
+  // Sectors narrow towards the plane of incidence: lobes at grazing angles are slender.
+  const int lines = rings / 2;
+  const double plane = std::atan2(static_cast<double>(-wo.y()), static_cast<double>(-wo.x()));
+  for (int i = 0; i < lines; ++i) {
+    const double a = 0.5 * kPi * i / lines, b = 0.5 * kPi * (i + 1) / lines;
+    for (int j = 0; j < sectors; ++j) {
+      const double t = 2.0 * (j + 0.5) / sectors - 1.0;
+      const double phi = plane + kPi * (0.15 * t + 0.85 * t * t * t);
+      const double width = kPi * (0.15 + 2.55 * t * t) * 2.0 / sectors;
+      const Vec3f wi = direction(std::cos(0.5 * (a + b)), phi);
+      const double half = 0.5 * static_cast<double>((wi - mirrored).norm());
+      const double rest = 1.0 - share_of_rings(2.0 * std::asin(std::min(1.0, half)));
+      cells.push_back({wi, rest * (std::cos(a) - std::cos(b)) * width});
     }
   }
   return cells;
@@ -124,7 +140,7 @@ TEST(Lobes, SamplesFollowTheirDensityInTheMean) {
       SCOPED_TRACE(testing::Message() << c.name << " mu " << mu);
       const Vec3f wo = direction(mu, 0.4);
       double density = 0.0, albedo[3] = {0.0, 0.0, 0.0};
-      for (const Cell& cell : around_mirror(wo, 220, 96)) {
+      for (const Cell& cell : hemisphere(wo, 140, 72)) {
         density += static_cast<double>(pdf_of(c.lobe, wo, cell.wi)) * cell.solid_angle;
         const Rgb3 f = eval_of(c.lobe, wo, cell.wi);
         for (int i = 0; i < 3; ++i)
@@ -148,7 +164,7 @@ TEST(Lobes, SamplesFollowTheirDensityInTheMean) {
           sum2[i] += weight * weight;
         }
       }
-      // Quadrature: midpoint over some 2e4 cells, 1e-3 at the horizon's edge and sharp peaks.
+      // 3e-3: quadrature, most of it where the rings cross the horizon.
       const double p = kept / count;
       EXPECT_NEAR(density, p, 5.0 * std::sqrt(std::max(p * (1.0 - p), 1e-4) / count) + 3e-3);
       for (int i = 0; i < 3; ++i) {
@@ -165,10 +181,10 @@ TEST(Lobes, ChiSquareOfSamplesAgainstDensity) {
   for (const Case& c : cases()) {
     if (c.name.find("0.001") != std::string::npos || c.name.find("10000") != std::string::npos)
       continue;  // narrower than the cells; the means above cover them
-    for (const double mu : {0.98, 0.5, 0.12}) {
+    for (const double mu : {0.98, 0.5, 0.25}) {
       SCOPED_TRACE(testing::Message() << c.name << " mu " << mu);
       const Vec3f wo = direction(mu, 2.5);
-      const int rings = 20, sectors = 40, fine = 8, count = 20000;
+      const int rings = 16, sectors = 32, fine = 10, count = 20000;
       std::vector<double> expected(rings * sectors + 1, 0.0), seen(rings * sectors + 1, 0.0);
       double total = 0.0;
       for (int i = 0; i < rings * fine; ++i)
@@ -209,8 +225,8 @@ TEST(Lobes, ChiSquareOfSamplesAgainstDensity) {
         ++cells;
       }
       const double dof = std::max(1, cells - 1);
-      const double z = (std::cbrt(chi2 / dof) - (1.0 - 2.0 / (9.0 * dof))) /
-                       std::sqrt(2.0 / (9.0 * dof));
+      const double z =
+          (std::cbrt(chi2 / dof) - (1.0 - 2.0 / (9.0 * dof))) / std::sqrt(2.0 / (9.0 * dof));
       EXPECT_LT(z, 4.6) << "chi2 " << chi2 << " of " << cells << " cells";
     }
   }
@@ -223,7 +239,7 @@ TEST(Lobes, WeightsAreBounded) {
     std::string where;
     for (const double mu : {1.0, 0.95, 0.8, 0.6, 0.4, 0.25, 0.12, 0.05, 0.02, 0.005, 1e-3}) {
       const Vec3f wo = direction(mu, 0.4);
-      std::vector<Cell> cells = around_mirror(wo, 40, 24);
+      std::vector<Cell> cells = hemisphere(wo, 40, 24);
       for (double z = 1e-4; z < 1.0; z *= 1.25)
         for (int j = 0; j < 24; ++j) cells.push_back({direction(z, 0.4 + kPi * j / 12), 0.0});
       for (const Cell& cell : cells) {
@@ -238,31 +254,86 @@ TEST(Lobes, WeightsAreBounded) {
         }
       }
     }
-    if (std::getenv("SHOW")) std::printf("%-40s %.3f%s\n", c.name.c_str(), worst, where.c_str());
     EXPECT_LE(worst, static_cast<double>(bound_of(c.lobe)) * 1.001) << c.name << where;
   }
 }
 
+// Quadrature in the space of u: the density follows the lobe however slender it is, which a grid of
+// directions does not. That density and samples agree is what the tests above show.
 TEST(Lobes, AlbedoStaysBelowWhatTheModelPromises) {
+  constexpr int side = 48;
   for (const Case& c : cases()) {
     double largest = 0.0, at = 0.0;
-    for (const double mu : {1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05, 0.02, 0.01,
-                            0.003, 1e-3}) {
+    for (const double mu :
+         {1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05, 0.02, 0.01, 0.003, 1e-3}) {
       const Vec3f wo = direction(mu, 0.4);
       Rgb3 sum;
-      for (const Cell& cell : around_mirror(wo, 160, 64))
-        sum += eval_of(c.lobe, wo, cell.wi) *
-               (cell.wi.z() * static_cast<float>(cell.solid_angle));
+      for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+          const Vec2f u(static_cast<float>((i + 0.5) / side), static_cast<float>((j + 0.5) / side));
+          const auto wi = sample_of(c.lobe, wo, u);
+          if (wi) sum += eval_of(c.lobe, wo, *wi) * (wi->z() / pdf_of(c.lobe, wo, *wi));
+        }
+      sum /= static_cast<float>(side * side);
       const double albedo = static_cast<double>((sum + mirror_of(c.lobe, wo.z())).max());
       if (albedo > largest) {
         largest = albedo;
         at = mu;
       }
     }
-    if (std::getenv("SHOW")) std::printf("%-40s %.4f at %.4f\n", c.name.c_str(), largest, at);
-    // 3e-3: the quadrature's edge at the horizon.
-    EXPECT_LE(largest, c.albedo_limit + 3e-3) << c.name << " mu " << at;
+    EXPECT_LE(largest, c.albedo_limit + 5e-3) << c.name << " mu " << at;  // 5e-3: 48^2 points
   }
+}
+
+// blinn_phong_norm() makes the albedo 1 at normal incidence; that no other angle exceeds it, for
+// any exponent, is shown here.
+TEST(Lobes, BlinnPhongIsBrightestAtNormalIncidence) {
+  for (const double mu : {1.0, 0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5, 0.3, 0.1, 0.01}) {
+    const Vec3f wo = direction(mu, 0.4);
+    const std::vector<Cell> cells = hemisphere(wo, 120, 48);
+    for (float p = 0.0f; p < 2000.0f; p = 1.2f * p + 0.1f) {
+      double albedo = 0.0;
+      for (const Cell& cell : cells)
+        albedo += static_cast<double>(blinn_phong(cell.wi, wo, 0.0f, 1.0f, p) * cell.wi.z()) *
+                  cell.solid_angle;
+      EXPECT_LE(albedo, 1.0 + 2e-3) << "p " << p << " mu " << mu;
+      if (mu == 1.0) {
+        EXPECT_NEAR(albedo, 1.0, 2e-3) << "p " << p;
+      }
+    }
+  }
+}
+
+// Against a thinner medium the density has a pole of 1/sqrt at the critical angle, so integrate
+// over the directions inside: dw = n^2 mu/cos dw'.
+TEST(Lobes, HanrahanKruegerBeyondTheCriticalAngle) {
+  const float n = 0.8f, g = 0.2f;
+  const HanrahanKruegerLobe<3> lobe{{}, Rgb3::one(), Rgb3::one(), n, g};
+  const Vec3f wo = direction(0.9, 0.4);
+  double total = 0.0;
+  const int lines = 200, sectors = 200;
+  for (int i = 0; i < lines; ++i)
+    for (int j = 0; j < sectors; ++j) {
+      const double mu = (i + 0.5) / lines;
+      const Vec3f v = direction(mu, 2.0 * kPi * (j + 0.5) / sectors);
+      const Vec3f wi(n * v.x(), n * v.y(), std::sqrt(1.0f - n * n * (1.0f - v.z() * v.z())));
+      const double stretch = static_cast<double>(n * n * v.z() / wi.z());
+      total += static_cast<double>(lobe.pdf(wo, wi)) * stretch * 2.0 * kPi / (lines * sectors);
+    }
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<float> u(0.0f, 1.0f);
+  const int count = 40000;
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const auto wi = lobe.sample(wo, {u(rng), u(rng)});
+    if (!wi) continue;
+    ++kept;
+    EXPECT_GT(wi->z(), 0.599f);  // the cone of escape, cos^2 = 1 - n^2
+    EXPECT_LE(lobe.eval(wo, *wi).max() * wi->z(), lobe.pdf(wo, *wi));
+  }
+  EXPECT_NEAR(total, static_cast<double>(kept) / count, 5.0 * 0.5 / std::sqrt(count) + 1e-3);
+  EXPECT_FALSE(lobe.sample(direction(0.5, 0.0), {0.5f, 0.5f}));  // beyond it nothing enters
+  EXPECT_EQ(lobe.pdf(direction(0.5, 0.0), wo), 0.0f);
 }
 
 }  // namespace
