@@ -11,6 +11,10 @@ int run_render(const RenderCommand& command, std::stop_token stop);
 int run_solve(const SolveCommand& command, std::stop_token stop);
 int run_info(const InfoCommand& command, std::stop_token stop);
 int run_compare(const CompareCommand& command);
+int run_material_eval(const MaterialEvalCommand& command);
+int run_material_derive(const MaterialDeriveCommand& command);
+int run_material_list(const MaterialListCommand& command);
+int run_material_show(const MaterialShowCommand& command);
 
 inline constexpr int kInterrupted = 130;
 

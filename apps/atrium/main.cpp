@@ -26,6 +26,10 @@ struct Run {
   int operator()(const SolveCommand& c) const { return run_solve(c, stop); }
   int operator()(const InfoCommand& c) const { return run_info(c, stop); }
   int operator()(const CompareCommand& c) const { return run_compare(c); }
+  int operator()(const MaterialEvalCommand& c) const { return run_material_eval(c); }
+  int operator()(const MaterialDeriveCommand& c) const { return run_material_derive(c); }
+  int operator()(const MaterialListCommand& c) const { return run_material_list(c); }
+  int operator()(const MaterialShowCommand& c) const { return run_material_show(c); }
 };
 
 }  // namespace

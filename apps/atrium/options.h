@@ -88,12 +88,44 @@ struct CompareCommand {
   bool json = false;
 };
 
+/// `atrium material eval`.
+struct MaterialEvalCommand {
+  std::string input = "-";  ///< "-": standard input
+  std::string output;       ///< empty: standard output
+  std::string kinds;        ///< "markdown" or "json": describe the queries instead
+};
+
+/// `atrium material derive`.
+struct MaterialDeriveCommand {
+  double sigma = 0.0, tau = 0.0;  ///< [m]
+  std::string material;           ///< name of a table; empty: n and kappa
+  double n = 1.5, kappa = 0.0;
+  std::vector<double> wavelengths_nm;
+  double scattering = 0.0;  ///< of the bulk [1/m]
+  double thickness = 0.0;   ///< [m]
+  bool json = false, csv = false;
+};
+
+/// `atrium material list`.
+struct MaterialListCommand {
+  bool json = false;
+};
+
+/// `atrium material show`.
+struct MaterialShowCommand {
+  std::string name;
+  std::string output;  ///< picture, .svg or .png; may be empty
+  bool json = false;
+};
+
 /// Nothing left to do but to leave with a code (help, version, configuration printed).
 struct Finished {
   int code = 0;
 };
 
-using Command = std::variant<Finished, RenderCommand, SolveCommand, InfoCommand, CompareCommand>;
+using Command = std::variant<Finished, RenderCommand, SolveCommand, InfoCommand, CompareCommand,
+                             MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
+                             MaterialShowCommand>;
 
 /// \throws Error  on wrong usage, one line.
 [[nodiscard]] Command parse_command_line(int argc, char** argv);

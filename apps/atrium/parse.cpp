@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <iostream>
 
+#include "common/suggest.h"
 #include "material/error.h"
+#include "option_text.h"
 #include "options.h"
 #include "scene/image_io.h"
 #include "scene/output_file.h"
@@ -23,68 +25,15 @@ struct Texts {
   bool no_pane_detection = false;
 };
 
-std::string shell_word(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
+/// The same of `material derive`.
+struct DeriveTexts {
+  std::string sigma, tau, thickness = "0", wavelengths = "380:780:10";
+};
 
 std::string join(int argc, char** argv) {
   std::string line = "atrium";
   for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
   return line;
-}
-
-/// Numbers between separators; the whole text must be used up.
-template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const std::string& text, char separator) {
-  std::array<double, N> result{};
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < N; ++i) {
-    const std::size_t end = i + 1 < N ? text.find(separator, at) : text.size();
-    if (end == std::string::npos || end == at) return std::nullopt;
-    const std::string part = text.substr(at, end - at);
-    std::size_t used = 0;
-    try {
-      result[i] = std::stod(part, &used);
-    } catch (const std::exception&) {
-      return std::nullopt;
-    }
-    if (used != part.size() || !std::isfinite(result[i])) return std::nullopt;
-    at = end + 1;
-  }
-  return result;
-}
-
-std::array<int, 2> parse_size(const std::string& text) {
-  const auto n = numbers<2>(text, 'x');
-  const auto fits = [](double v) { return v >= 1.0 && v <= 65536.0 && v == std::floor(v); };
-  if (!n || !fits((*n)[0]) || !fits((*n)[1])) {
-    throw Error("--size " + text + ": is not WIDTHxHEIGHT in pixels, 1 to 65536 each");
-  }
-  return {static_cast<int>((*n)[0]), static_cast<int>((*n)[1])};
-}
-
-std::array<double, 4> parse_crop(const std::string& text) {
-  const auto n = numbers<4>(text, ',');
-  if (!n || !((*n)[0] >= 0.0 && (*n)[0] < (*n)[2] && (*n)[2] <= 1.0 && (*n)[1] >= 0.0 &&
-              (*n)[1] < (*n)[3] && (*n)[3] <= 1.0)) {
-    throw Error("--crop " + text +
-                ": is not X0,Y0,X1,Y1 with 0 <= X0 < X1 <= 1, 0 <= Y0 < Y1 <= 1");
-  }
-  return *n;
-}
-
-std::optional<double> parse_exposure(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  const auto n = numbers<1>(text, ' ');
-  if (!n || !(std::abs((*n)[0]) <= 60.0)) {
-    throw Error("--exposure " + text + ": is neither auto nor an exposure value (-60 to 60)");
-  }
-  return (*n)[0];
 }
 
 template <class T>
@@ -250,6 +199,89 @@ void finish(SceneOptions& o, const Texts& t) {
   o.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
 }
 
+MaterialDeriveCommand finish(MaterialDeriveCommand o, const DeriveTexts& t, const CLI::App& app) {
+  o.sigma = parse_length("--sigma", t.sigma);
+  o.tau = parse_length("--tau", t.tau);
+  if (!(o.tau > 0.0)) throw Error("--tau " + t.tau + ": must be above 0");
+  o.thickness = parse_length("--thickness", t.thickness);
+  o.wavelengths_nm = parse_wavelengths(t.wavelengths);
+  if (o.material.empty() && app.count("--n") == 0)
+    throw Error("--material NAME, or --n N and --kappa K, is required");
+  return o;
+}
+
+/// `atrium material ...`: a subcommand each, and what they fill.
+struct MaterialParser {
+  MaterialEvalCommand eval;
+  MaterialDeriveCommand derive;
+  MaterialListCommand list;
+  MaterialShowCommand show;
+  DeriveTexts derive_texts;
+
+  void add(CLI::App& material) {
+    material.require_subcommand(1);
+    material.fallthrough();
+    add_eval(*material.add_subcommand("eval", "answer queries: a JSON array in, a JSON array out"));
+    add_derive(*material.add_subcommand("derive", "the model's parameters of a surface as made"));
+    material.add_subcommand("list", "materials and illuminants known")
+        ->add_flag("--json", list.json, "for programs");
+    add_show(*material.add_subcommand("show", "data sheet of a material"));
+  }
+  [[nodiscard]] Command finished(const CLI::App& sub) const {
+    const std::string& name = sub.get_name();
+    if (name == "eval") return eval;
+    if (name == "derive") return finish(derive, derive_texts, sub);
+    if (name == "list") return list;
+    return show;
+  }
+
+ private:
+  void add_eval(CLI::App& sub) {
+    sub.add_option("queries", eval.input, "JSON file; -: standard input")
+        ->type_name("FILE")
+        ->capture_default_str();
+    sub.add_option("-o,--output", eval.output, "answers; default: standard output")
+        ->type_name("FILE");
+    sub.add_option("--kinds", eval.kinds, "describe all kinds of queries instead: markdown or json")
+        ->check(CLI::IsMember({"markdown", "json"}));
+  }
+  void add_derive(CLI::App& sub) {
+    sub.add_option("--sigma", derive_texts.sigma, "rms height: 0.2um, 200nm, 2e-7 [m]")
+        ->required()
+        ->type_name("LENGTH");
+    sub.add_option("--tau", derive_texts.tau, "correlation length of the heights")
+        ->required()
+        ->type_name("LENGTH");
+    CLI::Option* material =
+        sub.add_option("--material", derive.material, "named optical constants")->type_name("NAME");
+    sub.add_option("--n", derive.n, "absolute index of refraction")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->excludes(material);
+    sub.add_option("--kappa", derive.kappa, "index of absorption k/n")
+        ->check(CLI::Range(0.0, 1e6))
+        ->excludes(material)
+        ->capture_default_str();
+    sub.add_option("--wavelengths", derive_texts.wavelengths,
+                   "in vacuum [nm]: FIRST:LAST:STEP or A,B,C")
+        ->type_name("NM")
+        ->capture_default_str();
+    sub.add_option("--mu-s", derive.scattering, "scattering of the bulk [1/m]")
+        ->check(CLI::Range(0.0, 1e12))
+        ->capture_default_str();
+    sub.add_option("--thickness", derive_texts.thickness, "of a transmitting body")
+        ->type_name("LENGTH")
+        ->capture_default_str();
+    CLI::Option* json = sub.add_flag("--json", derive.json, "for programs");
+    sub.add_flag("--csv", derive.csv, "for tables")->excludes(json);
+  }
+  void add_show(CLI::App& sub) {
+    sub.add_option("name", show.name, "see atrium material list")->required()->type_name("NAME");
+    sub.add_option("-o,--output", show.output, "picture of curves and colours: .svg .png")
+        ->type_name("FILE");
+    sub.add_flag("--json", show.json, "for programs");
+  }
+};
+
 /// The parser and the values that it fills.
 struct Parser {
   CLI::App app{"Atrium: light in buildings by radiosity and ray tracing", "atrium"};
@@ -257,6 +289,7 @@ struct Parser {
   SolveCommand solve;
   InfoCommand info;
   CompareCommand compare;
+  MaterialParser material;
   Texts render_texts, solve_texts, info_texts;
   bool print_config = false;
 
@@ -272,6 +305,7 @@ struct Parser {
     add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
     add_info_command(*app.add_subcommand("info", "what a file contains, needs and goes without"));
     add_compare_command(*app.add_subcommand("compare", "error measures between two images"));
+    material.add(*app.add_subcommand("material", "explore the material model"));
   }
 
  private:
@@ -311,14 +345,24 @@ struct Parser {
 
 /// What was given as values, the defaults in effect as comments: read back, an option that was not
 /// given still counts as not given when contradictions are looked for.
-void print_configuration(const CLI::App& sub) {
-  std::cout << '[' << sub.get_name() << "]\n" << sub.config_to_str(false, false);
+void print_configuration(const CLI::App& sub, const std::string& section) {
+  std::cout << '[' << section << "]\n" << sub.config_to_str(false, false);
   for (const CLI::Option* option : sub.get_options()) {
     if (option->count() > 0 || !option->get_configurable()) continue;
     const bool flag = option->get_expected_max() == 0;
     std::cout << "# " << option->get_single_name() << "="
               << (flag ? "false" : option->get_default_str()) << '\n';
   }
+}
+
+/// CLI11 would take a mistyped command for an argument too many.
+void check_command(const CLI::App& app, std::string_view word, const std::string& before) {
+  if (word.empty() || word.front() == '-') return;
+  std::vector<std::string_view> known;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(sub->get_name());
+  if (std::find(known.begin(), known.end(), word) == known.end())
+    throw Error(before + std::string(word) + ": unknown command" + suggestion(word, known));
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -342,6 +386,7 @@ Command finished_command(Parser& p, const std::string& command_line) {
     finish(p.info.scene, p.info_texts);
     return p.info;
   }
+  if (name == "material") return p.material.finished(*sub.get_subcommands().front());
   return p.compare;
 }
 
@@ -361,15 +406,15 @@ Effort effort_of(Quality quality) {
 
 Command parse_command_line(int argc, char** argv) {
   Parser p;
-  const auto is_command = [&](const CLI::App* sub) { return sub->check_name(argv[1]); };
-  if (argc > 1 && argv[1][0] != '-' && p.app.get_subcommands(is_command).empty()) {
-    throw Error(std::string(argv[1]) + ": unknown command (known: render solve info compare)");
-  }
+  check_command(p.app, argc > 1 ? argv[1] : "", "");
+  if (argc > 2 && std::string_view(argv[1]) == "material")
+    check_command(*p.app.get_subcommand("material"), argv[2], "material ");
   try {
     p.app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    const auto subs = p.app.get_subcommands();
-    std::cout << (subs.empty() ? p.app.help() : subs.front()->help());
+    const CLI::App* innermost = &p.app;
+    while (!innermost->get_subcommands().empty()) innermost = innermost->get_subcommands().front();
+    std::cout << innermost->help();
     return Finished{0};
   } catch (const CLI::CallForVersion& e) {
     std::cout << e.what() << '\n';
@@ -380,7 +425,11 @@ Command parse_command_line(int argc, char** argv) {
   const Command command = finished_command(p, join(argc, argv));
   if (!p.print_config) return command;
   const CLI::App& sub = *p.app.get_subcommands().front();
-  print_configuration(sub);
+  if (sub.get_subcommands().empty())
+    print_configuration(sub, sub.get_name());
+  else
+    print_configuration(*sub.get_subcommands().front(),
+                        sub.get_name() + "." + sub.get_subcommands().front()->get_name());
   return Finished{0};
 }
 

@@ -5,12 +5,37 @@
 
 namespace atrium::app {
 
+void append_json_text(std::string& out, std::string_view value) {
+  constexpr char kHex[] = "0123456789abcdef";
+  out += '"';
+  for (const char c : value) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (u < 0x20) {
+      out += "\\u00";
+      out += kHex[u >> 4];
+      out += kHex[u & 15];
+    } else {
+      out += c;
+    }
+  }
+  out += '"';
+}
+
+void append_json_number(std::string& out, double value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  out.append(buffer, result.ptr);
+}
+
 void JsonWriter::key(std::string_view name) {
   if (!first_) out_ += ',';
   if (!open_.empty()) out_ += '\n' + std::string(open_.size() * 2, ' ');
   first_ = false;
   if (!name.empty()) {
-    quoted(name);
+    append_json_text(out_, name);
     out_ += ": ";
   }
 }
@@ -30,28 +55,9 @@ void JsonWriter::end() {
   first_ = false;
 }
 
-void JsonWriter::quoted(std::string_view value) {
-  constexpr char kHex[] = "0123456789abcdef";
-  out_ += '"';
-  for (const char c : value) {
-    const auto u = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out_ += '\\';
-      out_ += c;
-    } else if (u < 0x20) {
-      out_ += "\\u00";
-      out_ += kHex[u >> 4];
-      out_ += kHex[u & 15];
-    } else {
-      out_ += c;
-    }
-  }
-  out_ += '"';
-}
-
 void JsonWriter::member(std::string_view name, std::string_view value) {
   key(name);
-  quoted(value);
+  append_json_text(out_, value);
 }
 void JsonWriter::member(std::string_view name, bool value) {
   key(name);
@@ -75,9 +81,7 @@ void JsonWriter::member(std::string_view name, double value) {
     out_ += "null";
     return;
   }
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  out_.append(buffer, result.ptr);
+  append_json_number(out_, value);
 }
 
 }  // namespace atrium::app

@@ -7,6 +7,11 @@
 
 namespace atrium::app {
 
+/// Adds a text in quotes, escaped.
+void append_json_text(std::string& out, std::string_view value);
+/// Adds the shortest digits that read back as the same number. Not for NaN or infinity.
+void append_json_number(std::string& out, double value);
+
 /// Writes JSON with members in the order given. Text is escaped; numbers that are not finite
 /// become null, as JSON has none.
 ///
@@ -37,7 +42,6 @@ class JsonWriter {
  private:
   void begin(std::string_view name, char bracket);
   void key(std::string_view name);
-  void quoted(std::string_view value);
   std::string out_;
   std::vector<char> open_;
   bool first_ = true;

@@ -73,4 +73,10 @@ SampledSpectrum extinction_of(const OpticalConstants& constants) {
   return extinction;
 }
 
+std::vector<std::pair<std::string, std::string>> optical_constants_aliases() {
+  std::vector<std::pair<std::string, std::string>> aliases;
+  for (const auto& [english, symbol] : kEnglishNames) aliases.emplace_back(english, symbol);
+  return aliases;
+}
+
 }  // namespace atrium::material

@@ -10,47 +10,17 @@
 #include <gtest/gtest.h>
 
 #include "scene/image_io.h"
+#include "support/run_program.h"
 #include "support/temp_folder.h"
 
 namespace {
 
+using atrium::test::expect_error;
+using atrium::test::read_file;
+using atrium::test::Result;
+using atrium::test::run;
+using atrium::test::run_command;
 using atrium::test::TempFolder;
-
-struct Result {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Runs `prefix atrium arguments` in the shell, in the folder.
-Result run_command(const TempFolder& folder, const std::string& command) {
-  const std::string line = "cd '" + folder.path().string() + "' && { " + command +
-                           "; } >stdout.txt 2>stderr.txt </dev/null";
-  const int status = std::system(line.c_str());
-  Result r;
-  r.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-  r.out = read_file(folder / "stdout.txt");
-  r.err = read_file(folder / "stderr.txt");
-  std::filesystem::remove(folder / "stdout.txt");
-  std::filesystem::remove(folder / "stderr.txt");
-  return r;
-}
-Result run(const TempFolder& folder, const std::string& arguments) {
-  return run_command(folder, std::string(ATRIUM_PROGRAM) + " " + arguments);
-}
-
-/// Exactly one line, "atrium: error: ..." with the fragment in it.
-void expect_error(const Result& r, int code, const std::string& fragment) {
-  EXPECT_EQ(r.code, code) << r.err;
-  EXPECT_EQ(r.err.find("atrium: error: "), 0u) << r.err;
-  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-  EXPECT_NE(r.err.find(fragment), std::string::npos) << r.err;
-}
 
 /// A floor of 2 m x 2 m.
 constexpr const char* kFloor = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n";

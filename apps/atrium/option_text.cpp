@@ -1,0 +1,118 @@
+#include "option_text.h"
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "material/error.h"
+
+namespace atrium::app {
+
+namespace {
+
+/// Numbers between separators; the whole text must be used up.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(const std::string& text, char separator) {
+  std::array<double, N> result{};
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    const std::size_t end = i + 1 < N ? text.find(separator, at) : text.size();
+    if (end == std::string::npos || end == at) return std::nullopt;
+    const std::string part = text.substr(at, end - at);
+    std::size_t used = 0;
+    try {
+      result[i] = std::stod(part, &used);
+    } catch (const std::exception&) {
+      return std::nullopt;
+    }
+    if (used != part.size() || !std::isfinite(result[i])) return std::nullopt;
+    at = end + 1;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+double parse_length(const char* option, const std::string& text) {
+  constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"nm", 1e-9}, {"um", 1e-6}, {"\u00b5m", 1e-6}, {"\u03bcm", 1e-6}, {"mm", 1e-3}, {"m", 1.0}};
+  std::string amount = text;
+  double unit = 1.0;
+  for (const auto& [name, metres] : kUnits) {
+    if (!text.ends_with(name)) continue;
+    amount.resize(text.size() - name.size());
+    unit = metres;
+    break;
+  }
+  const auto n = numbers<1>(amount, ' ');
+  if (!n || !((*n)[0] >= 0.0))
+    throw Error(std::string(option) + " " + text +
+                ": is no length of at least 0, such as 0.2um, 200nm or 2e-7 (metres)");
+  return (*n)[0] * unit;
+}
+
+std::vector<double> parse_wavelengths(const std::string& text) {
+  constexpr double kMost = 10000.0;
+  std::vector<double> list;
+  if (const auto range = numbers<3>(text, ':')) {
+    const auto [first, last, step] = *range;
+    if (first > 0.0 && last >= first && step > 0.0 && (last - first) / step < kMost)
+      for (int i = 0; first + i * step <= last * (1.0 + 1e-12); ++i)
+        list.push_back(first + i * step);
+  } else {
+    for (std::size_t at = 0; at <= text.size();) {
+      const std::size_t end = std::min(text.find(',', at), text.size());
+      const auto n = numbers<1>(text.substr(at, end - at), ' ');
+      if (!n || !((*n)[0] > 0.0)) {
+        list.clear();
+        break;
+      }
+      list.push_back((*n)[0]);
+      at = end + 1;
+    }
+  }
+  if (list.empty())
+    throw Error("--wavelengths " + text +
+                ": is neither FIRST:LAST:STEP nor a list A,B,C of wavelengths above 0 in nm");
+  return list;
+}
+
+std::array<int, 2> parse_size(const std::string& text) {
+  const auto n = numbers<2>(text, 'x');
+  const auto fits = [](double v) { return v >= 1.0 && v <= 65536.0 && v == std::floor(v); };
+  if (!n || !fits((*n)[0]) || !fits((*n)[1])) {
+    throw Error("--size " + text + ": is not WIDTHxHEIGHT in pixels, 1 to 65536 each");
+  }
+  return {static_cast<int>((*n)[0]), static_cast<int>((*n)[1])};
+}
+
+std::array<double, 4> parse_crop(const std::string& text) {
+  const auto n = numbers<4>(text, ',');
+  if (!n || !((*n)[0] >= 0.0 && (*n)[0] < (*n)[2] && (*n)[2] <= 1.0 && (*n)[1] >= 0.0 &&
+              (*n)[1] < (*n)[3] && (*n)[3] <= 1.0)) {
+    throw Error("--crop " + text +
+                ": is not X0,Y0,X1,Y1 with 0 <= X0 < X1 <= 1, 0 <= Y0 < Y1 <= 1");
+  }
+  return *n;
+}
+
+std::optional<double> parse_exposure(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  const auto n = numbers<1>(text, ' ');
+  if (!n || !(std::abs((*n)[0]) <= 60.0)) {
+    throw Error("--exposure " + text + ": is neither auto nor an exposure value (-60 to 60)");
+  }
+  return (*n)[0];
+}
+
+}  // namespace atrium::app
