@@ -303,6 +303,52 @@ TEST_F(YamlScenes, LinesBetweenTheStepsCount) {
   EXPECT_NEAR(xyz.z(), sum(material::cie_z_bar()) / sum(material::cie_y_bar()), 1e-3);
 }
 
+TEST_F(YamlScenes, LobesOfTheLiterature) {
+  const Model model = read(
+      "materials:\n"
+      "  smith: {ior: Au, c: 4, masking: smith, facet_interreflection: true, fresnel_error: 0}\n"
+      "  phong: {ior: Au, lobe: {phong: {exponent: 50}}}\n"
+      "  blinn: {ior: Au, lobe: {blinn_phong: {exponent: 70}}}\n"
+      "  cook: {ior: Au, lobe: {cook_torrance: {m: 0.25}}}\n"
+      "  he: {ior: Au, lobe: {he: {sigma: 1e-7, tau: 2e-6}}}\n"
+      "  clay: {body: 0.5, lobe: {oren_nayar: {s: 0.4}}}\n"
+      "  leaf: {body: 0.5, lobe: {hanrahan_krueger: {depth: 2, g: 0.3}}}\n"
+      "  schlick: {ior: Au, lobe: {schlick: {r: 0.2, p: 0.9}}}\n"
+      "  ggx: {ior: Au, lobe: {ggx: {alpha: 0.2}}}\n"
+      "  plain: {like: ggx, lobe: facets}\n");
+  using namespace material;
+  const Material& smith = material_named(model, "smith");
+  EXPECT_EQ(smith.masking, Masking::Smith);
+  EXPECT_TRUE(smith.facet_interreflection);
+  EXPECT_EQ(smith.fresnel_error, 0.0);
+  const auto lobe = [&](const char* name) { return material_named(model, name).lobe; };
+  EXPECT_EQ(std::get<PhongModel>(lobe("phong")).exponent, 50.0);
+  EXPECT_EQ(std::get<BlinnPhongModel>(lobe("blinn")).exponent, 70.0);
+  EXPECT_EQ(std::get<CookTorranceModel>(lobe("cook")).m, 0.25);
+  EXPECT_EQ(std::get<HeModel>(lobe("he")).sigma, 1e-7);
+  EXPECT_EQ(std::get<HeModel>(lobe("he")).tau, 2e-6);
+  EXPECT_EQ(std::get<OrenNayarModel>(lobe("clay")).s, 0.4);
+  EXPECT_EQ(std::get<HanrahanKruegerModel>(lobe("leaf")).depth, 2.0);
+  EXPECT_EQ(std::get<HanrahanKruegerModel>(lobe("leaf")).g, 0.3);
+  EXPECT_EQ(std::get<SchlickModel>(lobe("schlick")).r, 0.2);
+  EXPECT_EQ(std::get<SchlickModel>(lobe("schlick")).p, 0.9);
+  EXPECT_EQ(std::get<GgxModel>(lobe("ggx")).alpha, 0.2);
+  EXPECT_TRUE(material_named(model, "plain").facets());
+}
+
+TEST_F(YamlScenes, GlassOfATableIsNoMetal) {
+  const Model model = read("materials:\n  glass: {ior: BK7}\n  gold: {ior: Au}\n");
+  EXPECT_EQ(material_named(model, "glass").k_df, 1.0);  // opaque: a body, as with {ior: 1.52}
+  EXPECT_EQ(material_named(model, "gold").k_df, 0.0);
+}
+
+TEST_F(YamlScenes, PaneByItsDataSheet) {
+  const Model model = read("materials:\n  w: {medium: pane, tau_v: 0.9183, rho_v: 0.0817}\n");
+  const material::Material& pane = material_named(model, "w");
+  EXPECT_NEAR(std::get<double>(pane.n), 1.52, 5e-4);
+  EXPECT_NEAR(std::get<double>(pane.extinction) * pane.pane_thickness, 0.0, 1e-6);
+}
+
 TEST_F(YamlScenes, MaterialsInThePapersTerms) {
   const Model model = read(
       "materials:\n"
