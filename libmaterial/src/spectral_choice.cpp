@@ -127,7 +127,10 @@ Point point_of_lane(const ResolvedMaterial<N>& r, double thickness, int i) {
 // Without what resolve_material would tabulate and no aspect reads.
 Material bare(const Material& m) {
   Material b = m;
-  b.k_rg = 0.0;
+  b.k_rg = b.k_tp_rg = 0.0;
+  b.lobe = FacetModel{};
+  b.masking = Masking::VCavity;
+  b.facet_interreflection = false;
   b.c = std::numeric_limits<double>::infinity();
   b.sigma.reset();
   b.emission = 0.0;
@@ -142,11 +145,13 @@ std::vector<Aspect> aspects_of(const Material& m) {
     for (const Aspect a : aspects)
       if (shows) list.push_back(a);
   };
-  const bool body_is_interface = (t.diffuse_reflection && !m.body_reflectance) ||
-                                 (t.diffuse_transmission && !m.body_transmittance);
-  add(t.mirror || t.rough || t.coupled || body_is_interface,
+  const bool body_lobe = t.rough && is_body(m.lobe);  // no diffuse reflection by its traits
+  const bool body = t.diffuse_reflection || body_lobe;
+  const bool body_is_interface =
+      (body && !m.body_reflectance) || (t.diffuse_transmission && !m.body_transmittance);
+  add(t.mirror || (t.rough && !body_lobe) || t.coupled || body_is_interface,
       {Aspect::Reflection0, Aspect::Reflection60});
-  add(t.diffuse_reflection && m.body_reflectance, {Aspect::Body});
+  add(body && m.body_reflectance, {Aspect::Body});
   add(t.diffuse_transmission && m.body_transmittance, {Aspect::BodyTransmission});
   add(t.transmits, {Aspect::Solid1cm, Aspect::Solid10cm, Aspect::Solid1m});
   add(t.pane, {Aspect::Pane0, Aspect::Pane60, Aspect::PaneReflection60});
