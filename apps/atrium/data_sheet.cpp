@@ -12,11 +12,18 @@
 namespace atrium::app {
 namespace {
 
-/// Encoded sRGB of a linear value, in [0, 255]. IEC 61966-2-1.
-int encoded(double linear) {
+/// Encoded sRGB of a linear value, in [0, 1]. IEC 61966-2-1.
+double encoded(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
-  const double y = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-  return static_cast<int>(std::lround(255.0 * y));
+  return std::clamp(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055, 0.0, 1.0);
+}
+
+std::string hex_of(const std::array<double, 3>& srgb) {
+  const auto byte = [](double x) { return static_cast<unsigned>(std::lround(255.0 * x)); };
+  char hex[8];
+  std::snprintf(hex, sizeof hex, "#%02x%02x%02x", byte(srgb[0]) & 255u, byte(srgb[1]) & 255u,
+                byte(srgb[2]) & 255u);
+  return hex;
 }
 
 /// \param value  of n, k at each wavelength; they are taken on the 5 nm grid of the CIE tables.
@@ -29,11 +36,9 @@ SheetColor color_of(const material::OpticalConstants& constants, std::string_vie
   const Eigen::Vector3d rgb =
       material::rgb_from_xyz() *
       material::xyz_of_reflectance(spectrum, *material::find_illuminant(illuminant));
-  SheetColor color{std::string(illuminant), {rgb.x(), rgb.y(), rgb.z()}, {}};
-  char hex[8];
-  std::snprintf(hex, sizeof hex, "#%02x%02x%02x", static_cast<unsigned>(encoded(rgb.x())),
-                static_cast<unsigned>(encoded(rgb.y())), static_cast<unsigned>(encoded(rgb.z())));
-  color.hex = hex;
+  SheetColor color{std::string(illuminant), {rgb.x(), rgb.y(), rgb.z()}, {}, {}};
+  for (std::size_t i = 0; i < 3; ++i) color.srgb[i] = encoded(color.rgb[i]);
+  color.hex = hex_of(color.srgb);
   return color;
 }
 

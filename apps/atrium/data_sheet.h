@@ -12,8 +12,9 @@ namespace atrium::app {
 /// A colour under an illuminant, relative to its luminance: what reflects everything has Y = 1.
 struct SheetColor {
   std::string illuminant;
-  std::array<double, 3> rgb;  ///< linear Rec. 709, not adapted; may leave [0, 1]
-  std::string hex;            ///< encoded sRGB, cut to what a screen shows: "#ffd89b"
+  std::array<double, 3> rgb;   ///< linear Rec. 709, not adapted; may leave [0, 1]
+  std::array<double, 3> srgb;  ///< encoded, cut to what a screen shows, in [0, 1]
+  std::string hex;             ///< the same: "#ffd89b"
 };
 
 /// What is known about a material, computed per wavelength and integrated last.

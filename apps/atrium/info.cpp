@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "common/json.h"
+#include "material/bsdf.h"
 #include "material/error.h"
 #include "scene/image_io.h"
 #include "scene/output_file.h"
@@ -145,6 +146,28 @@ std::vector<std::string> light_list(const scene::Features& f) {
   return list;
 }
 
+/// Which form of F the materials' interfaces use, and how far it may be off.
+std::vector<std::string> fresnel_list(const scene::Scene& scene,
+                                      const material::SpectralBasis& basis) {
+  std::vector<std::string> list;
+  with_lanes(basis.lanes(), [&](auto lanes) {
+    for (const material::Material& m : scene.materials) {
+      const auto resolved = material::resolve_material<lanes()>(m, basis);
+      if (!resolved.fresnel) continue;
+      std::string text = (m.name.empty() ? "(unnamed)" : m.name) + ": ";
+      const bool solid = m.medium == material::Material::Medium::Solid;
+      for (std::size_t side = 0; side < (solid ? 2U : 1U); ++side) {
+        const auto& term = (*resolved.fresnel)[side];
+        char error[48];
+        std::snprintf(error, sizeof error, " (error %.1e)", static_cast<double>(term.error()));
+        text += (side == 1 ? ", inside " : "") + std::string(name(term.form())) + error;
+      }
+      list.push_back(std::move(text));
+    }
+  });
+  return list;
+}
+
 void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   CommonOptions silent;
   silent.quiet = true;
@@ -162,6 +185,8 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   r.add("unit of radiance",
         std::string(scene.unit == scene::RadianceUnit::Nit ? "cd/m^2" : "W/(sr m^2)"));
   r.add("spectrum", loaded.basis.describe());
+  r.add("reason for spectrum", loaded.basis_reason);
+  r.list("forms of the Fresnel reflectance", fresnel_list(scene, loaded.basis));
   r.list("lights", light_list(loaded.features));
   std::vector<std::string> cameras;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {

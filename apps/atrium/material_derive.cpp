@@ -20,26 +20,23 @@ struct Row {
 std::vector<Row> derive(const MaterialDeriveCommand& c) {
   const material::OpticalConstants* table =
       c.material.empty() ? nullptr : &material_query::named_material(c.material);
+  material::SurfaceStatistics surface;
+  surface.sigma = c.sigma;
+  surface.tau = c.tau;
+  surface.scattering = c.scattering;
+  surface.thickness = c.thickness;
+  surface.n = c.n;
+  surface.kappa = c.kappa;
+  const double facet_albedo = material::facet_albedo(surface);
   std::vector<Row> rows;
   for (const double nm : c.wavelengths_nm) {
-    material::SurfaceStatistics surface;
-    surface.sigma = c.sigma;
-    surface.tau = c.tau;
-    surface.scattering = c.scattering;
-    surface.thickness = c.thickness;
-    surface.n = c.n;
-    surface.kappa = c.kappa;
     if (table) {
       material_query::check_wavelength(*table, nm);
       surface.n = table->n.at(nm);
       surface.kappa = table->k.at(nm) / surface.n;
     }
-    try {
-      rows.push_back(
-          {nm, surface.n, surface.kappa, material::derive_parameters(surface, nm * 1e-9)});
-    } catch (const std::invalid_argument& e) {
-      throw Error(e.what());  // everything that is checked there comes from the command line
-    }
+    rows.push_back({nm, surface.n, surface.kappa,
+                    material::derive_parameters(surface, nm * 1e-9, facet_albedo)});
   }
   return rows;
 }
@@ -120,7 +117,12 @@ void print_json(const std::vector<Row>& rows) {
 }  // namespace
 
 int run_material_derive(const MaterialDeriveCommand& c) {
-  const std::vector<Row> rows = derive(c);
+  std::vector<Row> rows;
+  try {
+    rows = derive(c);
+  } catch (const std::invalid_argument& e) {
+    throw Error(e.what());  // everything that is checked there comes from the command line
+  }
   if (c.json)
     print_json(rows);
   else if (c.csv)

@@ -4,6 +4,7 @@
 #include "common/json.h"
 #include "data_sheet.h"
 #include "material_query/named_material.h"
+#include "plot/plot.h"
 
 namespace atrium::app {
 
@@ -76,10 +77,75 @@ void print_json(const DataSheet& s) {
   std::fputs(json.text().c_str(), stdout);
 }
 
+plot::Swatch swatch(const char* what, const SheetColor& c) {
+  return {std::string(what) + ", " + c.illuminant + " " + c.hex, {c.srgb[0], c.srgb[1], c.srgb[2]}};
+}
+
+plot::Chart spectral_chart(const DataSheet& s, const char* title) {
+  plot::Chart chart;
+  chart.title = title;
+  chart.x_title = "vacuum wavelength / nm";
+  chart.x_range = plot::Range{s.samples.front().lambda_nm, s.samples.back().lambda_nm};
+  return chart;
+}
+
+plot::Curve spectral_curve(const DataSheet& s, const char* name, double DataSheet::Sample::*y) {
+  plot::Curve curve;
+  curve.name = name;
+  for (const DataSheet::Sample& x : s.samples) {
+    curve.x.push_back(x.lambda_nm);
+    curve.y.push_back(x.*y);
+  }
+  return curve;
+}
+
+plot::Chart angle_chart(const DataSheet& s) {
+  plot::Chart chart;
+  chart.title = "reflectance by angle";
+  chart.x_title = "angle of incidence / deg";
+  chart.y_title = "F, linear RGB under D65";
+  chart.x_range = plot::Range{0.0, 90.0};
+  chart.y_range = plot::Range{0.0, 1.1};
+  chart.legend = plot::LegendPlace::BottomRight;
+  constexpr const char* kNames[] = {"R", "G", "B"};
+  const plot::Color colors[] = {{0.8, 0.1, 0.1}, {0.0, 0.55, 0.2}, {0.1, 0.2, 0.8}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    plot::Curve curve;
+    curve.name = kNames[i];
+    curve.color = colors[i];
+    for (const DataSheet::Angle& a : s.angles) {
+      curve.x.push_back(a.theta_deg);
+      curve.y.push_back(a.rgb[i]);
+    }
+    chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+void write_picture(const DataSheet& s, const std::string& file) {
+  plot::Chart index = spectral_chart(s, "complex index n + i k");
+  index.curves = {spectral_curve(s, "n", &DataSheet::Sample::n),
+                  spectral_curve(s, "k", &DataSheet::Sample::k)};
+  index.legend = plot::LegendPlace::TopLeft;
+  plot::Chart reflectance = spectral_chart(s, "reflectance");
+  reflectance.y_title = "F";
+  reflectance.curves = {spectral_curve(s, "F(0)", &DataSheet::Sample::F0),
+                        spectral_curve(s, "cosine mean", &DataSheet::Sample::F_mean)};
+  reflectance.legend = plot::LegendPlace::BottomRight;
+  plot::SwatchChart colors;
+  colors.title = s.name + " (" + s.source + ")";
+  colors.columns = 1;
+  colors.swatches = {swatch("F(0)", s.normal_d65), swatch("F(0)", s.normal_a),
+                     swatch("cosine mean", s.mean_d65)};
+  plot::write_plot(file, {index, reflectance, angle_chart(s), colors},
+                   {.width = 1000, .height = 720, .columns = 2});
+}
+
 }  // namespace
 
 int run_material_show(const MaterialShowCommand& c) {
   const DataSheet sheet = make_data_sheet(material_query::named_material(c.name));
+  if (!c.output.empty()) write_picture(sheet, c.output);
   c.json ? print_json(sheet) : print_text(sheet);
   return 0;
 }

@@ -114,6 +114,7 @@ struct MaterialListCommand {
 /// `atrium material show`.
 struct MaterialShowCommand {
   std::string name;
+  std::string output;  ///< picture, .svg or .png; may be empty
   bool json = false;
 };
 

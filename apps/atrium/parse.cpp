@@ -312,6 +312,8 @@ struct MaterialParser {
   }
   void add_show(CLI::App& sub) {
     sub.add_option("name", show.name, "see atrium material list")->required()->type_name("NAME");
+    sub.add_option("-o,--output", show.output, "picture of curves and colours: .svg .png")
+        ->type_name("FILE");
     sub.add_flag("--json", show.json, "for programs");
   }
 };

@@ -1,3 +1,6 @@
+#include <array>
+#include <optional>
+
 #include "material/coherent.h"
 #include "material/error.h"
 #include "material/interface_albedo.h"
@@ -60,9 +63,22 @@ void brdf_convex(const Inputs& in, Answer& out) {
                                  k_df, k_rg, in["rho_d"], roughness_in_waves));
 }
 
+/// Making one is a matter of milliseconds, and queries often come as many directions of one
+/// surface: the last is remembered.
+const material::CoupledInterface& coupled_interface(double c, double n, double rho_b) {
+  thread_local std::optional<material::CoupledInterface> last;
+  thread_local std::array<double, 3> made_for{};
+  if (!last || made_for != std::array{c, n, rho_b}) {
+    last.emplace(c, n, rho_b);
+    made_for = {c, n, rho_b};
+  }
+  return *last;
+}
+
 void brdf_coupled(const Inputs& in, Answer& out) {
   const Vec3d b = viewer_above(in);
-  const material::CoupledInterface coupled(in["c"], in["n"], in["rho_b"]);
+  if (b.z() == 0.0) throw Error("z of b is 0, must be above 0: the albedo has no value there");
+  const material::CoupledInterface& coupled = coupled_interface(in["c"], in["n"], in["rho_b"]);
   out.number_or_infinite("f", coupled.brdf(in.direction("l"), b));
   out.number("albedo_b", coupled.albedo(b.z()));
 }
@@ -77,6 +93,8 @@ void coherent(const Inputs& in, Answer& out) {
 }  // namespace
 
 std::vector<Kind> interface_kinds() {
+  Input mu = number("mu", "cosine to the normal", between(0.0, 1.0));
+  mu.range.low_open = true;
   const Input n1 = number("n1", "index of the viewer's medium", above(0.0));
   const Input n2 = number("n2", "index of the other medium", above(0.0));
   const Input dielectric = number("n", "index of the body, n2 / n1", above(0.0));
@@ -97,13 +115,13 @@ std::vector<Kind> interface_kinds() {
        btdf},
       {"albedo",
        "directional albedo of f_s (V-cavities)",
-       {mu(), roughness(), optional(index()), optional(absorption())},
+       {mu, roughness(), optional(index()), optional(absorption())},
        "`E_one` (F = 1), `E_gold` (n = 0.27, k = 2.95), `E_glass` (n = 1.5); `E` for given `n`, "
        "`k`",
        albedo},
       {"albedo_rt",
        "directional albedos of a rough dielectric interface (V-cavities)",
-       {mu(), roughness(), index()},
+       {mu, roughness(), index()},
        "`R`, `T`",
        albedo_rt},
       {"brdf_convex",

@@ -63,7 +63,6 @@ struct Kind {
 [[nodiscard]] inline Input cosine() {
   return number("cos", "cosine of the angle of incidence", between(0.0, 1.0));
 }
-[[nodiscard]] inline Input mu() { return number("mu", "cosine to the normal", between(0.0, 1.0)); }
 [[nodiscard]] inline Input index() { return number("n", "n_transmitted / n_incident", above(0.0)); }
 [[nodiscard]] inline Input absorption() {
   return number("k", "n kappa, relative as n", at_least(0.0));

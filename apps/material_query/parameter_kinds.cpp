@@ -1,5 +1,8 @@
 #include "material/parameters.h"
 
+#include <optional>
+#include <utility>
+
 #include "material/error.h"
 #include "material_query/kinds.h"
 
@@ -10,6 +13,14 @@ void extinction(const Inputs& in, Answer& out) {
   out.number("K_per_m", material::extinction_coefficient(in["n"] * in["kappa"], in["lambda_m"]));
 }
 
+/// Queries often come as many wavelengths of one surface: the last slope is remembered.
+double cached_facet_albedo(const material::SurfaceStatistics& surface) {
+  thread_local std::optional<std::pair<double, double>> last;  // slope, albedo
+  const double slope = surface.sigma / surface.tau;
+  if (!last || last->first != slope) last.emplace(slope, material::facet_albedo(surface));
+  return last->second;
+}
+
 void derive(const Inputs& in, Answer& out) {
   material::SurfaceStatistics surface;
   surface.sigma = in["sigma"];
@@ -18,7 +29,8 @@ void derive(const Inputs& in, Answer& out) {
   surface.kappa = in["kappa"];
   surface.scattering = in.get("mu_s", 0.0);
   surface.thickness = in.get("thickness", 0.0);
-  const material::DerivedParameters p = material::derive_parameters(surface, in["lambda_"]);
+  const material::DerivedParameters p =
+      material::derive_parameters(surface, in["lambda_"], cached_facet_albedo(surface));
   out.number("m", p.m);
   out.number_or_infinite("c", p.c);
   out.number("gamma_mean", p.gamma_mean);

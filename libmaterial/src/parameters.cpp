@@ -23,21 +23,23 @@ void require(bool good, const char* name, double value, const char* range) {
   throw std::invalid_argument(text.data());
 }
 
-void check(const SurfaceStatistics& s, double lambda) {
+void require_above_0(const char* name, double v) {
+  require(v > 0.0 && v < kInf, name, v, "above 0 and finite");
+}
+
+void check(const SurfaceStatistics& s) {
   const auto at_least_0 = [](const char* name, double v) {
     require(v >= 0.0 && v < kInf, name, v, "at least 0 and finite");
   };
-  const auto above_0 = [](const char* name, double v) {
-    require(v > 0.0 && v < kInf, name, v, "above 0 and finite");
-  };
   at_least_0("sigma", s.sigma);
-  above_0("tau", s.tau);
-  above_0("lambda", lambda);
-  above_0("n", s.n);
+  require_above_0("tau", s.tau);
+  require_above_0("n", s.n);
   at_least_0("kappa", s.kappa);
   at_least_0("scattering", s.scattering);
   at_least_0("thickness", s.thickness);
 }
+
+double slope(const SurfaceStatistics& s) { return 2.0 * s.sigma / s.tau; }
 
 // Reflectance of a scattering half-space under an interface (Hapke's two streams inside,
 // Saunderson's correction for the interface).
@@ -79,11 +81,23 @@ double extinction_coefficient(double k, double lambda) {
   return 4.0 * std::numbers::pi * k / lambda;
 }
 
+double facet_albedo(const SurfaceStatistics& s) {
+  check(s);
+  const double m = slope(s);
+  return m > 0.0 && 1.0 / m <= kRoughest ? mean_white_albedo(1.0 / m) : 1.0;
+}
+
 DerivedParameters derive_parameters(const SurfaceStatistics& s, double lambda) {
-  check(s, lambda);
+  return derive_parameters(s, lambda, facet_albedo(s));
+}
+
+DerivedParameters derive_parameters(const SurfaceStatistics& s, double lambda,
+                                    double facet_albedo) {
+  check(s);
+  require_above_0("lambda", lambda);
   DerivedParameters d{};
   const double k = s.n * s.kappa;
-  d.m = 2.0 * s.sigma / s.tau;
+  d.m = slope(s);
   d.c = d.m > 0.0 ? 1.0 / d.m : kInf;
   d.gamma_mean = coherent_reflection_mean(s.sigma, lambda);
   d.F_mean = fresnel_mean(s.n, k);
@@ -91,7 +105,7 @@ DerivedParameters derive_parameters(const SurfaceStatistics& s, double lambda) {
   d.body = body_reflectance(s, d.K, d.F_mean);
   d.validity = validity_of(s, d.m, lambda);
 
-  const double E = d.c <= kRoughest ? mean_white_albedo(d.c) : 1.0;
+  const double E = facet_albedo;
   const double specular = d.F_mean * (d.gamma_mean + (1.0 - d.gamma_mean) * E);
   const double diffuse =
       (1.0 - d.gamma_mean) * (1.0 - E) * interreflected_fresnel(d.F_mean, E) + d.body;

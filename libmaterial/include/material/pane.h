@@ -32,4 +32,15 @@ struct PaneTerms {
   return result;
 }
 
+/// Index and K d of a pane.
+struct PaneParameters {
+  double n, kd;
+};
+
+/// The uncoated pane that has these values at normal incidence, as data sheets give them (EN 410):
+/// \param tau_v  visible transmittance, in (0, 1].  \param rho_v  visible reflectance, >= 0.
+/// \throws std::invalid_argument  naming the value and its range, also for tau_v + rho_v > 1.
+/// From T and R_pane follow R = rho / (1 + t tau) and t, the root of t (1-R)^2 = tau (1 - R^2 t^2).
+[[nodiscard]] PaneParameters pane_from_visible(double tau_v, double rho_v);
+
 }  // namespace atrium::material

@@ -49,4 +49,11 @@ struct DerivedParameters {
 /// Source: MATERIAL_MODEL section 8 (Saunderson 1942, Hapke 1981, Kulla & Conty 2017).
 [[nodiscard]] DerivedParameters derive_parameters(const SurfaceStatistics& surface, double lambda);
 
+/// Mean albedo of the surface's facets if they reflected everything: the costly part, which is the
+/// same at all wavelengths. \throws as derive_parameters().
+[[nodiscard]] double facet_albedo(const SurfaceStatistics& surface);
+/// \param facet_albedo  of this surface.
+[[nodiscard]] DerivedParameters derive_parameters(const SurfaceStatistics& surface, double lambda,
+                                                  double facet_albedo);
+
 }  // namespace atrium::material

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "material/error.h"
+#include "material/pane.h"
 #include "scene/image_io.h"
 #include "yaml_scene.h"
 
@@ -63,7 +64,9 @@ void read_weights(const YamlMap& map, bool derived, Material& m) {
   const bool coupled = m.combination == Material::Combination::Coupled;
   const bool opaque = m.medium == Material::Medium::Opaque;
   if (!derived || map.has("medium") || map.has("combination") || map.has("ior")) {
-    const bool interface_only = !opaque || material::max_value(m.kappa) > 0.0;
+    // The tables give glasses a kappa of 1e-6: clear all the same, no metal.
+    constexpr double kClear = 1e-3;
+    const bool interface_only = !opaque || material::max_value(m.kappa) > kClear;
     m.k_df = coupled || !interface_only ? 1.0 : 0.0;
     m.k_rg = coupled || interface_only ? 1.0 : 0.0;
     m.k_tp_df = 0.0;
@@ -103,8 +106,7 @@ void read_roughness(const YamlMap& map, Material& m) {
 material::LobeModel read_lobe(const YamlView& view) {
   using namespace material;
   if (!view.is_map()) {
-    view.choice({"facets"});
-    return FacetModel{};
+    if (view.choice({"facets"}) == 0) return FacetModel{};
   }
   const YamlMap map = view.map("lobe", {"phong", "blinn_phong", "cook_torrance", "he", "oren_nayar",
                                         "hanrahan_krueger", "schlick", "ggx"});
@@ -223,6 +225,26 @@ void read_textures(YamlScene& scene, const YamlMap& map, Material& m) {
   if (const auto v = map.find("alpha")) read_alpha(scene, *v, m);
 }
 
+// A pane by the values of its data sheet, at normal incidence.
+void read_data_sheet(const YamlMap& map, Material& m) {
+  const auto tau = map.find("tau_v");
+  const auto rho = map.find("rho_v");
+  if (!tau && !rho) return;
+  const YamlView& given = tau ? *tau : *rho;
+  if (m.medium != Material::Medium::Pane) given.fail("tau_v and rho_v belong to medium: pane");
+  if (!tau || !rho) given.fail("tau_v and rho_v go together");
+  for (const char* other : {"ior", "extinction"})
+    if (map.has(other)) given.fail(std::string(other) + " follows from tau_v and rho_v");
+  try {
+    const material::PaneParameters pane = material::pane_from_visible(tau->number(), rho->number());
+    m.n = pane.n;
+    m.kappa = 0.0;
+    m.extinction = pane.kd / m.pane_thickness;
+  } catch (const std::invalid_argument& e) {
+    given.fail(e.what());
+  }
+}
+
 void read_body(const YamlScene& scene, const YamlMap& map, Material& m) {
   const auto color = [&](std::string_view key, double high) {
     return read_spectral(scene, map.get(key), 0.0, high);
@@ -230,8 +252,9 @@ void read_body(const YamlScene& scene, const YamlMap& map, Material& m) {
   if (map.has("body")) m.body_reflectance = color("body", 1.0);
   if (map.has("body_transmission")) m.body_transmittance = color("body_transmission", 1.0);
   if (map.has("tint")) m.transmission_tint = color("tint", 1.0);
-  if (map.has("extinction")) m.extinction = color("extinction", kUnlimited);
+  if (const auto v = map.find("extinction")) m.extinction = read_extinction(scene, *v);
   if (const auto v = map.find("thickness")) m.pane_thickness = v->positive();
+  read_data_sheet(map, m);
   if (const auto v = map.find("one_sided")) m.one_sided = v->boolean();
   if (const auto v = map.find("ray_falloff")) {
     const std::vector<double> c = v->numbers(2);
@@ -264,6 +287,8 @@ void read_material(YamlScene& scene, const std::string& name, const YamlView& vi
                                                            "tint",
                                                            "extinction",
                                                            "thickness",
+                                                           "tau_v",
+                                                           "rho_v",
                                                            "emission",
                                                            "body_texture",
                                                            "reflectance_texture",

@@ -18,20 +18,25 @@ namespace {
 using atrium::material_query::answer_queries;
 
 std::string query(const std::string& kind, const std::string& inputs) {
-  return R"({"kind": ")" + kind + R"(", "inputs": {)" + inputs + "}}";
+  std::string text = R"({"kind": ")";
+  text += kind;
+  text += R"(", "inputs": {)";
+  text += inputs;
+  return text += "}}";
 }
 
 /// The answer of one query, without the array around it.
 std::string answer(const std::string& kind, const std::string& inputs) {
-  const std::string text = answer_queries("[" + query(kind, inputs) + "]");
-  EXPECT_EQ(text.substr(0, 2), "[\n");
-  EXPECT_EQ(text.substr(text.size() - 3), "\n]\n");
-  return text.substr(2, text.size() - 5);
+  const std::string text = answer_queries(std::string("[").append(query(kind, inputs)) + "]");
+  EXPECT_TRUE(text.starts_with("[\n") && text.ends_with("\n]\n")) << text;
+  return text.size() < 5 ? text : text.substr(2, text.size() - 5);
 }
 
 /// A number of an answer; NaN if it is not there.
 double value(const std::string& answer, const std::string& name) {
-  const std::string key = "\"" + name + "\": ";
+  std::string key = "\"";
+  key += name;
+  key += "\": ";
   const std::size_t at = answer.find(key);
   if (at == std::string::npos) return std::nan("");
   if (answer.compare(at + key.size(), 5, "\"inf\"") == 0) return HUGE_VAL;
@@ -50,7 +55,10 @@ void expect_values(const std::vector<Case>& cases) {
     const std::string a = answer(c.kind, c.inputs);
     SCOPED_TRACE(a);
     for (const auto& [name, expected] : c.values)
-      EXPECT_NEAR(value(a, name), expected, c.tolerance * std::abs(expected)) << name;
+      if (std::isinf(expected))
+        EXPECT_EQ(value(a, name), expected) << name;
+      else
+        EXPECT_NEAR(value(a, name), expected, c.tolerance * std::abs(expected)) << name;
   }
 }
 
@@ -311,7 +319,7 @@ void expect_refused(const std::string& kind, const std::string& inputs,
                     const std::vector<std::string>& words) {
   const std::string a = answer(kind, inputs);
   SCOPED_TRACE(a);
-  EXPECT_EQ(a.find(R"({"kind": ")" + kind + R"(", "error": ")"), 0u);
+  EXPECT_EQ(a.find(R"(", "error": ")"), 10 + kind.size());
   EXPECT_EQ(a.find("values"), std::string::npos);
   for (const std::string& word : words) EXPECT_NE(a.find(word), std::string::npos) << word;
 }
@@ -420,13 +428,16 @@ TEST(MaterialQuery, EmptyArrayAndUnreadableText) {
 
 // Digits that read back as the same number, and no others than it takes.
 TEST(MaterialQuery, NumbersRoundTrip) {
-  EXPECT_EQ(answer_queries("[" + query("norm", R"("c": 0)") + "]"),
+  EXPECT_EQ(answer_queries(std::string("[").append(query("norm", R"("c": 0)")).append("]")),
             "[\n{\"kind\": \"norm\", \"values\": {\"N\": 0.31830988618379075}}\n]\n");
 }
 
 TEST(MaterialQuery, TimeIsLinear) {
   std::string text = "[";
-  for (int i = 0; i < 20000; ++i) text += (i > 0 ? "," : "") + query("norm", R"("c": 1)");
+  for (int i = 0; i < 20000; ++i) {
+    if (i > 0) text += ',';
+    text += query("norm", R"("c": 1)");
+  }
   const std::string answers = answer_queries(text + "]");
   EXPECT_EQ(std::count(answers.begin(), answers.end(), '\n'), 20002);
 }

@@ -111,6 +111,23 @@ TEST(Pane, IsTheSumOverInternalReflections) {
     }
 }
 
+// Data sheet values come back from the pane that they describe.
+TEST(Pane, FromVisibleTransmittanceAndReflectance) {
+  for (const double n : {1.0, 1.3, 1.52, 2.5})
+    for (const double kd : {0.0, 0.01, 0.3, 5.0}) {
+      const PaneTerms p = pane(1.0f, static_cast<float>(n), static_cast<float>(kd));
+      const double tau = static_cast<double>(p.transmittance);
+      const double rho = std::min(static_cast<double>(p.reflectance), 1.0 - tau);
+      const PaneParameters got = pane_from_visible(tau, rho);
+      EXPECT_NEAR(got.n, n, 1e-4 + (n == 1.0 ? 1e-3 : 0.0)) << kd;
+      EXPECT_NEAR(got.kd, kd, 1e-5 * (1.0 + kd)) << n;
+    }
+  EXPECT_NEAR(pane_from_visible(0.9183, 0.0817).n, 1.52, 5e-4);
+  for (const auto& [tau, rho] :
+       {std::pair{0.0, 0.1}, {0.9, 0.2}, {0.5, -0.1}, {1.1, 0.0}, {NAN, 0.1}})
+    EXPECT_THROW((void)pane_from_visible(tau, rho), std::invalid_argument) << tau << " " << rho;
+}
+
 TEST(Pane, GrazingAndMatchedAndOpaqueLimits) {
   EXPECT_EQ(pane(0.0f, 1.52f, 0.1f).transmittance, 0.0f);
   EXPECT_EQ(pane(0.0f, 1.52f, 0.1f).reflectance, 1.0f);

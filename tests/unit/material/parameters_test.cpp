@@ -87,5 +87,20 @@ TEST(Parameters, RefusesByName) {
   EXPECT_NE(message([](S&) {}, -1.0).find("lambda"), std::string::npos);
 }
 
+// Many wavelengths of one surface share the costly part.
+TEST(Parameters, SharedFacetAlbedoChangesNothing) {
+  SurfaceStatistics s;
+  s.sigma = 2e-6;
+  s.tau = 9e-6;
+  const double albedo = facet_albedo(s);
+  EXPECT_GT(albedo, 0.8);
+  EXPECT_LT(albedo, 1.0);
+  EXPECT_EQ(derive_parameters(s, kGreen, albedo).k_df, derive_parameters(s, kGreen).k_df);
+  s.sigma = 0.0;
+  EXPECT_EQ(facet_albedo(s), 1.0);
+  s.tau = std::nan("");
+  EXPECT_THROW((void)facet_albedo(s), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace atrium::material
