@@ -79,7 +79,9 @@ plot::Chart lobe_chart(const std::string& title, std::vector<plot::Curve> curves
           .legend = plot::LegendPlace::TopLeft};
 }
 
-constexpr std::array<double, 6> kWaveLobes{0.05, 0.2, 0.3, 0.5, 1.0, 2.0};
+/// tau, sigma.
+constexpr std::array<std::array<double, 2>, 6> kWaveLobes{
+    {{3.0, 0.05}, {3.0, 0.2}, {3.0, 0.5}, {10.0, 0.05}, {10.0, 0.2}, {10.0, 2.0}}};
 
 }  // namespace
 
@@ -114,14 +116,23 @@ plot::SheetChart wave_sheet(const std::vector<WaveResult>& results) {
   std::sort(sigmas.begin(), sigmas.end());
   sigmas.erase(std::unique(sigmas.begin(), sigmas.end()), sigmas.end());
   for (const double s : sigmas) sheet.columns.push_back(short_number(s));
-  for (std::size_t i = 0; i + sigmas.size() <= results.size(); i += sigmas.size()) {
+  for (std::size_t i = 0; i < results.size();) {
     const WaveCase& wave = results[i].wave;
+    std::size_t end = i;
+    while (end < results.size() && results[end].wave.tau == wave.tau &&
+           results[end].wave.substance.name == wave.substance.name)
+      ++end;
     for (const bool he : {false, true}) {
       sheet.rows.push_back(wave.substance.name + ", tau " + short_number(wave.tau) +
                            (he ? ", He" : ", facets"));
-      for (std::size_t j = i; j < i + sigmas.size(); ++j)
-        sheet.tiles.push_back(he ? results[j].he : results[j].facets);
+      for (const double s : sigmas) {
+        sheet.tiles.emplace_back();
+        for (std::size_t j = i; j < end; ++j)
+          if (results[j].wave.sigma == s)
+            sheet.tiles.back() = he ? results[j].he : results[j].facets;
+      }
     }
+    i = end;
   }
   return sheet;
 }
@@ -137,7 +148,7 @@ std::vector<plot::Panel> wave_error_panels(const std::vector<WaveResult>& result
                       .y_range = plot::Range{0.002, 1.0},
                       .curves = {},
                       .legend = plot::LegendPlace::TopLeft};
-    for (const double tau : {10.0, 40.0}) {
+    for (const double tau : kWaveTaus) {
       const std::string name = "tau " + short_number(tau);
       plot::Curve picture{.name = name + ": picture, 95 % bound", .x = {}, .y = {}};
       plot::Curve lobe{.name = name + ": lobe, 30°", .x = {}, .y = {}, .dashed = true};
@@ -162,9 +173,9 @@ plot::Picture wave_error_picture() {
 std::vector<plot::Panel> wave_lobe_panels(bool quick) {
   std::vector<plot::Panel> panels;
   const auto basis = material::SpectralBasis::grey();
-  for (const double sigma : kWaveLobes) {
-    if (quick && sigma != 0.2) continue;
-    const WaveCase wave{grey_substance("metal", 0.96, 6.69), 10.0, sigma};
+  for (const auto& [tau, sigma] : kWaveLobes) {
+    if (quick && !(tau == 10.0 && sigma == 0.2)) continue;
+    const WaveCase wave{grey_substance("metal", 0.96, 6.69), tau, sigma};
     std::vector<plot::Curve> curves;
     std::string mirrors;
     for (const Model model : {Model::Facets, Model::He}) {
@@ -176,8 +187,9 @@ std::vector<plot::Panel> wave_lobe_panels(bool quick) {
                     surface.mirror(in_plane(30.0)));
       mirrors += text;
     }
-    panels.emplace_back(lobe_chart("sigma " + short_number(sigma) + " lambda, mirrors " + mirrors,
-                                   std::move(curves), 30.0));
+    panels.emplace_back(lobe_chart(
+        "tau " + short_number(tau) + ", sigma " + short_number(sigma) + ", mirrors " + mirrors,
+        std::move(curves), 30.0));
   }
   return panels;
 }

@@ -112,7 +112,7 @@ std::string wave_table(const std::vector<WaveResult>& results) {
 }
 
 /// "0.05 to 1, 5" of those for which `does` is `wanted`.
-std::string ranges(const Verdict& v, bool wanted) {
+std::string ranges(const Verdict& v, Verdict::Answer wanted) {
   std::string text;
   for (std::size_t i = 0; i < v.does.size();) {
     std::size_t end = i;
@@ -127,14 +127,16 @@ std::string ranges(const Verdict& v, bool wanted) {
 }
 
 std::string verdict_table(const std::vector<WaveResult>& results) {
-  Table table({"surface", "error of the picture", "facets do at sigma/lambda", "not at"});
+  Table table({"surface", "error of the picture", "facets do at sigma/lambda", "cannot be told",
+               "do not at"});
   for (const char* substance : {"metal", "dielectric"})
-    for (const double tau : {10.0, 40.0})
+    for (const double tau : kWaveTaus)
       for (const double error : {0.02, 0.05, 0.10, 0.20}) {
         const Verdict v = verdict(results, substance, tau, error);
         if (v.does.empty()) continue;
         table.row({std::string(substance) + ", tau = " + short_number(tau) + " lambda",
-                   short_number(100.0 * error) + " %", ranges(v, true), ranges(v, false)});
+                   short_number(100.0 * error) + " %", ranges(v, Verdict::Answer::Yes),
+                   ranges(v, Verdict::Answer::Open), ranges(v, Verdict::Answer::No)});
       }
   return table.text();
 }

@@ -141,8 +141,7 @@ class Run {
     sheet.title = "refracting " + s.name;
     for (const Stage stage : {Stage::Sphere, Stage::Box})
       for (const Model m : models)
-        sheet.columns.push_back(std::string(name_of(stage)) +
-                                (m == Model::Solid ? "" : ", paper"));
+        sheet.columns.push_back(std::string(name_of(stage)) + (m == Model::Solid ? "" : ", paper"));
     for (const Roughness& r : roughnesses()) {
       sheet.rows.push_back(r.name);
       for (const Stage stage : {Stage::Sphere, Stage::Box})

@@ -166,6 +166,7 @@ ImageDifference difference(const RenderedTile& image, const RenderedTile& refere
   const double mean2 = error2 / pixels;  // of the square; pixels are independent
   const double deviation = std::sqrt(std::max(0.0, error4 / pixels - mean2 * mean2) / pixels);
   d.error = std::sqrt(std::max(0.0, mean2));
+  d.low = std::sqrt(std::max(0.0, mean2 - 1.96 * deviation));
   d.high = std::sqrt(std::max(0.0, mean2) + 1.96 * deviation);
   d.rmse = std::sqrt(std::max(0.0, square / n)) * n / sum;
   d.bias = Y_image / Y_reference - 1.0;

@@ -40,9 +40,9 @@ struct RenderedTile {
 /// are products of those of independent halves: noise does not add to them.
 struct ImageDifference {
   double error = 0.0;  ///< RMS of (I - R) / (Y5(R) + 0.05 median Y(R)), as `atrium compare`
-  double high = 0.0;   ///< end of its 95 % confidence interval
-  double rmse = 0.0;   ///< RMS of I - R over the mean of R, all channels
-  double bias = 0.0;   ///< mean Y(I) / mean Y(R) - 1
+  double low = 0.0, high = 0.0;  ///< its 95 % confidence interval
+  double rmse = 0.0;             ///< RMS of I - R over the mean of R, all channels
+  double bias = 0.0;             ///< mean Y(I) / mean Y(R) - 1
   double noise = 0.0;  ///< RMS noise of one picture as `error`: what a single one would add
 };
 [[nodiscard]] ImageDifference difference(const RenderedTile& image, const RenderedTile& reference);

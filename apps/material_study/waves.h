@@ -17,8 +17,9 @@ struct WaveCase {
   [[nodiscard]] bool steep() const { return slope() > 0.5 + 1e-9; }
   [[nodiscard]] Roughness roughness() const;
 };
-/// A metal and a dielectric, tau = 10 and 40 wavelengths, sigma from 0.05 to 10; `quick`: three of
-/// one kind.
+inline constexpr double kWaveTaus[] = {3.0, 10.0, 40.0};
+/// A metal and a dielectric, correlation lengths kWaveTaus, sigma from 0.05 to 10; `quick`: three
+/// of one kind.
 [[nodiscard]] std::vector<WaveCase> wave_cases(bool quick);
 inline constexpr double kWaveLength = 555e-9;  ///< of the grey lane [m]
 
@@ -33,11 +34,12 @@ struct WaveResult {
 [[nodiscard]] WaveResult compare_waves(const WaveCase& wave, const TileOptions& options,
                                        const scene::Control& control);
 
-/// Where the facets do for an error: the 95 % bound of the picture's error is below it. Of the
-/// cases of one substance and tau that are not steep.
+/// Where the facets do for an error of the picture, by its 95 % confidence interval. Of the cases
+/// of one substance and tau that are not steep.
 struct Verdict {
+  enum class Answer { Yes, Open, No };
   std::vector<double> looked_at;  ///< sigma / lambda, increasing
-  std::vector<bool> does;
+  std::vector<Answer> does;
 };
 [[nodiscard]] Verdict verdict(const std::vector<WaveResult>& results, const std::string& substance,
                               double tau, double error);

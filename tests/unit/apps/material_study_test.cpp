@@ -105,11 +105,15 @@ TEST(MaterialStudy, VerdictNeedsTheBoundBelowTheError) {
   const double sigmas[] = {1.0, 0.1, 6.0}, highs[] = {0.04, 0.06, 0.01};
   for (std::size_t i = 0; i < 3; ++i) {
     results[i].wave = {grey_substance("metal", 1.0, 5.0), 10.0, sigmas[i]};
+    results[i].image.low = highs[i] - 0.02;
     results[i].image.high = highs[i];
   }
   const Verdict v = verdict(results, "metal", 10.0, 0.05);
   EXPECT_EQ(v.looked_at, (std::vector<double>{0.1, 1.0})) << "the steep one is left out";
-  EXPECT_EQ(v.does, (std::vector<bool>{false, true}));
+  using Answer = Verdict::Answer;
+  EXPECT_EQ(v.does, (std::vector<Answer>{Answer::Open, Answer::Yes}));
+  EXPECT_EQ(verdict(results, "metal", 10.0, 0.03).does,
+            (std::vector<Answer>{Answer::No, Answer::Open}));
 }
 
 TEST(MaterialStudy, WritesTheSamePicturesAndTablesAgain) {
