@@ -154,7 +154,7 @@ std::string report(const StudyOptions& options, const StudyResult& r) {
     text += std::string("### ") + name_of(stage) + "\n\n" + image_table(r.surfaces, stage);
   text += "## Smooth surfaces: facets against wave optics\n\n" + text::about_waves() +
           pictures(r.wave_pictures) + wave_table(r.waves) + "### Verdict\n\n" +
-          verdict_table(r.waves) + text::about_verdict();
+          verdict_table(r.waves) + text::about_verdict(options);
   text += "## Time of an evaluation\n\n" + text::about_times() + timing_table(r.timings);
   while (text.ends_with("\n\n")) text.pop_back();
   return text;

@@ -34,17 +34,10 @@ Mean mean_of(const StudyResult& r, Model model, const std::string& roughness) {
   return mean;
 }
 
-double time_of(const StudyResult& r, const std::string& name) {
-  for (const Timing& t : r.timings)
-    if (t.name == name) return t.eval;
-  return 0.0;
-}
-
 std::string summary_table(const StudyResult& r) {
   std::string out =
-      "| model | smooth: error % | bias % | medium: error % | bias % | rough: error % | bias % | "
-      "eval [ns] |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
-  out += "| facets | 0 | 0 | 0 | 0 | 0 | 0 | " + number(time_of(r, "facets"), "%.0f") + " |\n";
+      "| model | smooth: error % | bias % | medium: error % | bias % | rough: error % | bias % |\n"
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
   for (const Model model : {Model::Paper, Model::CookTorrance, Model::He, Model::Ggx, Model::Phong,
                             Model::BlinnPhong, Model::Schlick}) {
     if (mean_of(r, model, "smooth").count == 0) continue;
@@ -53,7 +46,7 @@ std::string summary_table(const StudyResult& r) {
       const Mean m = mean_of(r, model, level.name);
       out += "| " + number(100.0 * m.error, "%.1f") + " | " + number(100.0 * m.bias, "%+.1f") + " ";
     }
-    out += "| " + number(time_of(r, name_of(model)), "%.0f") + " |\n";
+    out += "|\n";
   }
   return out + "\n";
 }
@@ -103,7 +96,7 @@ std::string introduction(const StudyOptions& options) {
 std::string findings(const StudyOptions& options, const StudyResult& result) {
   std::string out =
       "## Findings\n\nDifference from the facets on the sphere, mean over metals and glass "
-      "(plastic apart, see below), beside the time of an evaluation:\n\n" +
+      "(plastic apart, see below):\n\n" +
       summary_table(result);
   // What was seen in the whole study need not hold for a part of it.
   if (!options.quick && options.materials.empty()) out += kFindings;
@@ -176,7 +169,8 @@ without their mirror part: what the shape of the distribution and the cavities m
 )";
 }
 
-std::string about_verdict() {
+std::string about_verdict(const StudyOptions& options) {
+  if (options.quick) return "";
   return R"(Facets with the coherent mirror part have **no lower end in sigma / lambda** at correlation
 lengths of ten wavelengths and more: below sigma = 0.3 lambda both models are mirrors with a lobe
 that carries what the mirror lost, and Gamma = exp(-(4 pi sigma cos / lambda)^2) divides the light

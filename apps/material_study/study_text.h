@@ -16,7 +16,7 @@ namespace atrium::study::text {
 [[nodiscard]] std::string about_lobes();
 [[nodiscard]] std::string about_differences();
 [[nodiscard]] std::string about_waves();
-[[nodiscard]] std::string about_verdict();
+[[nodiscard]] std::string about_verdict(const StudyOptions& options);
 [[nodiscard]] std::string about_times();
 
 }  // namespace atrium::study::text

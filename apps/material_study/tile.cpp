@@ -23,11 +23,13 @@ scene::SurfaceField ambient_light([[maybe_unused]] const scene::RayQuery& query,
                                   [[maybe_unused]] const scene::Control& control) {
 #ifdef ATRIUM_WITH_RADIOSITY
   radiosity::SolveOptions o;
-  o.max_elements = 1500;
+  // Effort in step with that of the picture.
+  const auto samples = static_cast<std::uint32_t>(std::clamp(options.samples, 2, 64));
+  o.max_elements = std::max(200U, std::min(1500U, 40 * samples));
   o.row_rays = 32;
   o.gather_rays = 32;
   o.direct_samples = 8;
-  o.caustic_photons = 20000;
+  o.caustic_photons = 20000 * samples / 64;
   o.seed = options.seed;
   o.paper_weights = true;
   return radiosity::solve(query, basis, o, {.progress = {}, .stop = control.stop}).field;
