@@ -188,10 +188,10 @@ void write_text(const fs::path& file, const std::string& text) {
 
 StudyResult run_study(const StudyOptions& options, const scene::Control& control) {
   for (const std::string& name : options.materials) (void)find_substance(name);
-  if (!plot::plot_available())
-    throw RuntimeFailure("material compare: pictures cannot be drawn (built without VTK)");
   if (!fs::is_directory(options.folder))
     throw Error("-o " + options.folder.string() + ": is not a folder");
+  if (!plot::plot_available())
+    throw RuntimeFailure("material compare: pictures cannot be drawn (built without VTK)");
   std::error_code failed;
   fs::create_directories(options.folder / kPictures, failed);
   if (failed)

@@ -127,4 +127,14 @@ TEST(AtriumMaterial, ListAndShow) {
   expect_error(run(folder, "material show"), 2, "name");
 }
 
+TEST(AtriumMaterial, CompareRefuses) {
+  const TempFolder folder;
+  expect_error(run(folder, "material compare"), 2, "--output");
+  expect_error(run(folder, "material compare -o . --size 5x5"), 2, "--size 5x5");
+  expect_error(run(folder, "material compare -o . --materials gold,adamant"), 2,
+               "adamant: unknown");
+  expect_error(run(folder, "material compare -o missing"), 2, "missing");
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
 }  // namespace
