@@ -46,6 +46,7 @@ struct Kind {
 [[nodiscard]] std::vector<Kind> parameter_kinds();
 [[nodiscard]] std::vector<Kind> model_kinds();
 [[nodiscard]] std::vector<Kind> material_kinds();
+[[nodiscard]] std::vector<Kind> bsdf_kinds();
 [[nodiscard]] const std::vector<Kind>& all_kinds();
 
 // ---- inputs that many kinds share ----
