@@ -2,6 +2,7 @@
 # Installs the Debian 12 packages that Atrium needs; does nothing if all are there.
 #   scripts/install_deps.sh build        to build and run the programs
 #   scripts/install_deps.sh build test   and to run the tests
+#   scripts/install_deps.sh build bench  and to run the benchmarks
 set -eu
 
 build="g++ cmake ninja-build ccache pkg-config
@@ -9,13 +10,15 @@ build="g++ cmake ninja-build ccache pkg-config
   fonts-dejavu-core
   libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libassimp-dev libtinygltf-dev libtinyobjloader-dev"
 test="libgtest-dev xvfb xauth"
+bench="libbenchmark-dev python3"
 
 wanted=""
 for list in "$@"; do
   case "$list" in
     build) wanted="$wanted $build" ;;
     test) wanted="$wanted $test" ;;
-    *) echo "install_deps.sh: unknown list '$list' (known: build test)" >&2; exit 2 ;;
+    bench) wanted="$wanted $bench" ;;
+    *) echo "install_deps.sh: unknown list '$list' (known: build test bench)" >&2; exit 2 ;;
   esac
 done
 

@@ -162,6 +162,7 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   r.add("unit of radiance",
         std::string(scene.unit == scene::RadianceUnit::Nit ? "cd/m^2" : "W/(sr m^2)"));
   r.add("spectrum", loaded.basis.describe());
+  r.add("reason for spectrum", loaded.basis_reason);
   r.list("lights", light_list(loaded.features));
   std::vector<std::string> cameras;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {

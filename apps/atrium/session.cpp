@@ -103,11 +103,16 @@ LoadedScene load_scene(Session& session, const SceneOptions& options,
 
   loaded.query = std::make_unique<scene::RayQuery>(*loaded.scene);
   loaded.features = scene::find_features(*loaded.scene);
-  loaded.basis = scene::choose_basis(loaded.features, options.spectrum);
+  scene::BasisChoice choice = scene::choose_basis(*loaded.scene, loaded.features, options.spectrum);
+  loaded.basis = std::move(choice.basis);
+  loaded.basis_reason = std::move(choice.reason);
+  if (!choice.within_bound && settings.show_warnings)
+    session.progress.warning("colours are not within the bound: " + loaded.basis.describe() + ", " +
+                             loaded.basis_reason);
   session.progress.report("load", 1.0, {});
   session.detail("scene: " + std::to_string(loaded.scene->triangle_count()) + " triangles in " +
                  std::to_string(loaded.scene->objects.size()) + " objects");
-  session.detail("spectrum: " + loaded.basis.describe());
+  session.detail("spectrum: " + loaded.basis.describe() + ": " + loaded.basis_reason);
   for (const scene::Decision& d : scene::decide(loaded.features)) {
     session.detail((d.needed ? "needed:  " : "skipped: ") + d.what + ": " + d.reason);
   }

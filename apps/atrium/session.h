@@ -42,6 +42,7 @@ struct LoadedScene {
   std::unique_ptr<scene::RayQuery> query;
   scene::Features features;
   material::SpectralBasis basis = material::SpectralBasis::grey();
+  std::string basis_reason;        ///< why this basis, one line
   std::vector<std::size_t> views;  ///< the cameras asked for, by index
 };
 

@@ -144,6 +144,7 @@ void write_statistics(Session& session, const LoadedScene& loaded, const Statist
   json.member("triangles", loaded.scene->triangle_count());
   json.member("objects", static_cast<std::uint64_t>(loaded.scene->objects.size()));
   json.member("spectrum", loaded.basis.describe());
+  json.member("spectrum_reason", loaded.basis_reason);
   json.member("warnings", static_cast<std::uint64_t>(loaded.scene->report.warnings.size()));
   json.end();
   add_features(json, loaded.features);

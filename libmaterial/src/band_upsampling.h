@@ -12,7 +12,7 @@ namespace atrium::material {
 /// \returns S, n x 3, that minimises sum over bands and columns of (step of S)^2 / (step of
 ///   wavelength) subject to to_rgb S = 1 (3 x 3), S (1, 1, 1) = 1 and S >= 0.
 /// \throws std::invalid_argument if the primaries lie outside the bands' chromaticities: no such S.
-/// A convex quadratic programme of at most 24 unknowns: the active bounds are found by operator
+/// A convex quadratic programme of 3 n unknowns: the active bounds are found by operator
 /// splitting, then one linear solve is exact.
 [[nodiscard]] Eigen::MatrixXd smoothest_bands(const Eigen::MatrixXd& to_rgb,
                                               const std::vector<double>& wavelength_nm);

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "cie_grid.h"
 #include "names.h"
 
 namespace atrium::material {
@@ -70,16 +71,21 @@ const Eigen::Matrix3d& rgb_from_xyz() {
 
 Eigen::Vector3d xyz_of_reflectance(const SampledSpectrum& value,
                                    const SampledSpectrum& illuminant) {
-  const std::vector<double>& grid = cie_y_bar().wavelength_nm;
-  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
-  double white = 0.0;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const double light = illuminant.at(grid[i]);
-    const Eigen::Vector3d cmf(cie_x_bar().value[i], cie_y_bar().value[i], cie_z_bar().value[i]);
-    xyz += value.at(grid[i]) * light * cmf;
-    white += light * cmf.y();
-  }
-  return xyz / white;
+  // White on the grid of the value, so that a value of 1 has Y = 1 whichever way is taken.
+  const SampledSpectrum one{value.wavelength_nm, std::vector<double>(value.value.size(), 1.0)};
+  const Eigen::RowVectorXd seen = seen_product(value, illuminant);
+  const double white = seen_product(one, illuminant).dot(matching_on_grid().row(1));
+  return matching_on_grid() * seen.transpose() / white;
+}
+
+Eigen::Vector3d xyz_of_emission(const SampledSpectrum& radiance) {
+  const SampledSpectrum one{{kFirstNm}, {1.0}};
+  return kGridStepNm * kMaxLuminousEfficacy *
+         (matching_on_grid() * seen_product(radiance, one).transpose());
+}
+
+Eigen::Vector3d rgb_of_emission(const SampledSpectrum& radiance) {
+  return rgb_from_xyz() * xyz_of_emission(radiance);
 }
 
 }  // namespace atrium::material

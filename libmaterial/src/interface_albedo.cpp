@@ -68,7 +68,7 @@ class Facets {
  public:
   Facets(double mu, double c, Masking masking)
       : mu_(mu), sine_(std::sqrt((1.0 - mu) * (1.0 + mu))), c_(c), masking_(masking), facets_(c) {
-    if (masking == Masking::Smith) own_g1_ = smith(c, std::acos(mu)).g1;
+    if (masking == Masking::Smith) smith_.emplace(c);
   }
 
   // F G b.h of a facet that reflects.
@@ -99,13 +99,10 @@ class Facets {
   }
 
  private:
-  // The viewer's Smith term is kept: smith() is the costly part.
   double attenuation(double nl, double nh, double lh, double bh, bool transmitted) const {
-    if (masking_ != Masking::Smith)
-      return masking_term(masking_, c_, nl, mu_, nh, lh, bh, transmitted);
-    const double gl = smith(c_, std::acos(std::min(std::abs(nl), 1.0))).g1;
-    const double product = gl * own_g1_;
-    return transmitted || product == 0.0 ? product : product / (gl + own_g1_ - product);
+    if (!smith_) return masking_term(masking_, c_, nl, mu_, nh, lh, bh, transmitted);
+    const auto l = static_cast<float>(nl), b = static_cast<float>(mu_);
+    return static_cast<double>(transmitted ? smith_->transmission(b, l) : smith_->reflection(b, l));
   }
 
   // Facet angles at which a bend enters or leaves the circle of azimuths.
@@ -175,7 +172,7 @@ class Facets {
   double mu_, sine_, c_;
   Masking masking_;
   GaussianFacets<double> facets_;
-  double own_g1_ = 1.0;
+  std::optional<SmithTable> smith_;
 };
 
 double reflected_share(const Facets& facets, double mu, double n, double k) {

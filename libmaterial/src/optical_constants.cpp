@@ -1,6 +1,7 @@
 #include "material/optical_constants.h"
 
 #include <array>
+#include <numbers>
 #include <utility>
 
 #include "names.h"
@@ -63,6 +64,13 @@ std::vector<std::string> optical_constants_names() {
   std::vector<std::string> names;
   for (const OpticalConstants& constants : tables()) names.push_back(constants.name);
   return names;
+}
+
+SampledSpectrum extinction_of(const OpticalConstants& constants) {
+  SampledSpectrum extinction = constants.k;
+  for (std::size_t i = 0; i < extinction.value.size(); ++i)
+    extinction.value[i] *= 4.0 * std::numbers::pi / (extinction.wavelength_nm[i] * 1e-9);
+  return extinction;
 }
 
 std::vector<std::pair<std::string, std::string>> optical_constants_aliases() {

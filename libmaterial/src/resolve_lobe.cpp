@@ -32,11 +32,12 @@ struct Resolve {
     return lobe;
   }
   ComparisonLobe<N> operator()(const GgxModel& m) const {
-    GgxLobe<N> lobe;
+    ComparisonLobe<N> result{std::in_place_type<GgxLobe<N>>};
+    auto& lobe = std::get<GgxLobe<N>>(result);
     lobe.n = r.n;
     lobe.k = r.k;
     lobe.alpha = static_cast<float>(m.alpha);
-    return lobe;
+    return result;
   }
   ComparisonLobe<N> operator()(const OrenNayarModel& m) const {
     OrenNayarLobe<N> lobe;

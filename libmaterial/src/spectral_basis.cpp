@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "band_upsampling.h"
+#include "cie_grid.h"
 #include "material/cie.h"
 
 namespace atrium::material {
@@ -21,35 +22,11 @@ using Row = Eigen::RowVectorXd;
 constexpr double kEdges4[] = {380.0, 475.0, 510.0, 590.0, 730.0};
 constexpr double kEdges8[] = {380.0, 440.0, 465.0, 490.0, 530.0, 560.0, 590.0, 615.0, 730.0};
 
-const std::vector<double>& grid_nm() { return cie_y_bar().wavelength_nm; }
+const Row& d65() { return d65_on_grid(); }
 
-Row on_grid(const SampledSpectrum& s) {
-  Row row(static_cast<Eigen::Index>(grid_nm().size()));
-  for (Eigen::Index j = 0; j < row.size(); ++j)
-    row[j] = s.at(grid_nm()[static_cast<std::size_t>(j)]);
-  return row;
-}
-
-const Row& d65() {
-  static const Row row = on_grid(*find_illuminant("D65"));
-  return row;
-}
-
-// Colour-matching functions of linear Rec. 709, 3 x grid.
-Eigen::MatrixXd rgb_matching() {
-  Eigen::MatrixXd xyz(3, d65().size());
-  xyz << on_grid(cie_x_bar()), on_grid(cie_y_bar()), on_grid(cie_z_bar());
-  return rgb_from_xyz() * xyz;
-}
-
-// What each RGB channel sees of samples relative to D65: 3 x grid, rows sum to 1.
-const Eigen::MatrixXd& rgb_response() {
-  static const Eigen::MatrixXd response = [] {
-    Eigen::MatrixXd m = rgb_matching() * d65().asDiagonal();
-    for (Eigen::Index r = 0; r < 3; ++r) m.row(r) /= m.row(r).sum();
-    return m;
-  }();
-  return response;
+// What the edges share out: D65 * (x_bar + y_bar + z_bar).
+Row seen() {
+  return d65().cwiseProduct(on_grid(cie_x_bar()) + on_grid(cie_y_bar()) + on_grid(cie_z_bar()));
 }
 
 // Share of each grid cell (5 nm round its node) that lies in [lo, hi].
@@ -62,32 +39,32 @@ Row overlap(double lo, double hi) {
   return share;
 }
 
-// Integral of the piecewise linear spectrum over [lo, hi], by its own breakpoints.
-double integral(const SampledSpectrum& s, double lo, double hi) {
-  double sum = 0.0;
-  double left = lo;
-  auto next = std::upper_bound(s.wavelength_nm.begin(), s.wavelength_nm.end(), lo);
-  while (left < hi) {
-    const double right = next != s.wavelength_nm.end() ? std::min(hi, *next++) : hi;
-    sum += 0.5 * (right - left) * (s.at(left) + s.at(right));
-    left = right;
+// Every band cut in two at the whole nanometre that shares out what it sees most evenly. Halves
+// with equal values are the band again, so non-negative values for every colour still exist.
+std::vector<double> halved(const std::vector<double>& edges) {
+  const Row weight = seen();
+  std::vector<double> finer = {edges.front()};
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    double best = 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    for (double cut = edges[i] + 1.0; cut < edges[i + 1]; cut += 1.0) {
+      const double left = overlap(edges[i], cut).dot(weight);
+      const double right = overlap(cut, edges[i + 1]).dot(weight);
+      if (std::abs(left - right) >= least) continue;
+      least = std::abs(left - right);
+      best = cut;
+    }
+    finer.push_back(best);
+    finer.push_back(edges[i + 1]);
   }
-  return sum;
+  return finer;
 }
 
-// Values on the 5 nm grid. Samples as coarse as the grid are read at its nodes, as the CIE's sums
-// do; finer ones (lines of lamps) are averaged over the cell, so that none falls between nodes.
-Row resample(const SampledSpectrum& s) {
-  bool fine = false;
-  for (std::size_t i = 1; i < s.wavelength_nm.size(); ++i)
-    fine = fine || s.wavelength_nm[i] - s.wavelength_nm[i - 1] < 5.0 - 1e-9;
-  if (!fine) return on_grid(s);
-  Row row(d65().size());
-  for (Eigen::Index j = 0; j < row.size(); ++j) {
-    const double nm = grid_nm()[static_cast<std::size_t>(j)];
-    row[j] = integral(s, nm - 2.5, nm + 2.5) / 5.0;
-  }
-  return row;
+std::vector<double> edges_of(int lanes) {
+  if (lanes == 4) return {std::begin(kEdges4), std::end(kEdges4)};
+  std::vector<double> edges(std::begin(kEdges8), std::end(kEdges8));
+  for (int n = 8; n < lanes; n *= 2) edges = halved(edges);
+  return edges;
 }
 
 // Rounds to float and gives the rounding to the largest entry of each row, so that the row still
@@ -134,22 +111,22 @@ SpectralBasis SpectralBasis::rgb() {
 }
 
 SpectralBasis SpectralBasis::bands(int lanes) {
-  if (lanes != 4 && lanes != 8)
-    throw std::invalid_argument("SpectralBasis::bands: lanes must be 4 or 8");
+  if (lanes != 4 && lanes != 8 && lanes != 16 && lanes != 32)
+    throw std::invalid_argument("SpectralBasis::bands: lanes is " + std::to_string(lanes) +
+                                ", must be 4, 8, 16 or 32");
   SpectralBasis basis;
   basis.kind_ = Kind::Bands;
   basis.lanes_ = lanes;
-  const double* edges = lanes == 4 ? kEdges4 : kEdges8;
-  basis.band_edges_nm_.assign(edges, edges + lanes + 1);
+  basis.band_edges_nm_ = edges_of(lanes);
   basis.response_.resize(lanes, d65().size());
-  const Eigen::MatrixXd light = rgb_matching() * d65().asDiagonal();
-  const Row seen =
-      d65().cwiseProduct(on_grid(cie_x_bar()) + on_grid(cie_y_bar()) + on_grid(cie_z_bar()));
+  const Eigen::MatrixXd light = rgb_matching_on_grid() * d65().asDiagonal();
+  const Row sensitivity = seen();
   Eigen::MatrixXd to_rgb(3, lanes);
   for (int i = 0; i < lanes; ++i) {
-    const Row share = overlap(edges[i], edges[i + 1]);
+    const auto band = static_cast<std::size_t>(i);
+    const Row share = overlap(basis.band_edges_nm_[band], basis.band_edges_nm_[band + 1]);
     to_rgb.col(i) = light * share.transpose();
-    const Row weight = share.cwiseProduct(seen);
+    const Row weight = share.cwiseProduct(sensitivity);
     basis.response_.row(i) = weight / weight.sum();
     const Row nm = Eigen::Map<const Row>(grid_nm().data(), share.size());
     basis.wavelengths_nm_.push_back(weight.dot(nm) / weight.sum());
@@ -161,7 +138,31 @@ SpectralBasis SpectralBasis::bands(int lanes) {
   return basis;
 }
 
+std::vector<SpectralBasis> SpectralBasis::packs() const {
+  if (lanes_ <= kMaxLanes) return {*this};
+  const auto whole = std::make_shared<const SpectralBasis>(*this);
+  std::vector<SpectralBasis> packs;
+  for (int first = 0; first < lanes_; first += kMaxLanes) {
+    SpectralBasis pack;
+    pack.kind_ = kind_;
+    pack.lanes_ = kMaxLanes;
+    pack.whole_ = whole;
+    pack.first_ = first;
+    const auto nm = wavelengths_nm_.begin() + first;
+    const auto edge = band_edges_nm_.begin() + first;
+    pack.wavelengths_nm_.assign(nm, nm + kMaxLanes);
+    pack.band_edges_nm_.assign(edge, edge + kMaxLanes + 1);
+    pack.to_rgb_ = to_rgb_.middleCols(first, kMaxLanes);
+    pack.from_rgb_ = from_rgb_.middleRows(first, kMaxLanes);
+    pack.response_ = response_.middleRows(first, kMaxLanes);
+    packs.push_back(std::move(pack));
+  }
+  return packs;
+}
+
 Eigen::VectorXd SpectralBasis::lanes_of(const Eigen::RowVectorXd& samples, double highest) const {
+  // The colour that band means miss is shared out over all packs.
+  if (whole_) return whole_->lanes_of(samples, highest).segment(first_, lanes_);
   Eigen::VectorXd lane = response_ * samples.transpose();
   if (kind_ == Kind::Bands) {
     // Band means shift the colour; the smooth spectrum of what is missing is added.
@@ -220,7 +221,9 @@ std::string SpectralBasis::describe() const {
     case Kind::Bands:
       break;
   }
-  std::string text = std::to_string(lanes_) + " wavelength bands, edges";
+  std::string text = std::to_string(lanes_);
+  if (whole_) text += " of " + std::to_string(whole_->lanes_);
+  text += " wavelength bands, edges";
   for (const double nm : band_edges_nm_) text.append(" ").append(std::to_string(std::lround(nm)));
   return text + " nm";
 }

@@ -115,7 +115,8 @@ struct TableLanes {
 /// The error is measured when the object is made: the largest difference from the exact value in
 /// double over all lanes, at some 300 angles that are dense where F changes (towards grazing and
 /// next to total reflection). A form is taken if 1.05 times that, which covers the angles between,
-/// is within the bound. Evaluation allocates nothing and is safe from many threads.
+/// is within the bound; orders 1 and 2 only where their series converge, |N| > 1. Evaluation
+/// allocates nothing and is safe from many threads.
 template <int N>
 class FresnelTerm {
  public:
@@ -132,7 +133,8 @@ class FresnelTerm {
   [[nodiscard]] Spectrum<N> operator()(float c) const;
 
   [[nodiscard]] FresnelForm form() const { return static_cast<FresnelForm>(lanes_.index()); }
-  /// Largest absolute error measured, rounding included.
+  /// Largest absolute error measured, rounding included. Orders 1 and 2 asked for where their
+  /// series diverge may be worse in between.
   [[nodiscard]] float error() const { return error_; }
 
  private:

@@ -12,7 +12,7 @@ struct InterfaceAlbedo {
 };
 
 /// Albedo of f_s at the cosine mu in (0, 1], by quadrature over the facets; absolute error below
-/// 1e-8 for V-cavities (Smith and None too).
+/// 1e-8 (Smith: 1e-4, by its table).
 /// \param n, k  relative to the near side.
 [[nodiscard]] double specular_albedo(double mu, double c, double n, double k,
                                      Masking masking = Masking::VCavity);

@@ -8,7 +8,9 @@ namespace atrium::material {
 
 // Which reflection model a material follows: the paper's facets, or one of the literature that
 // stands in their place for comparison. Colours, n, kappa and the weights k_df, k_rg are those of
-// the Material; only shape parameters are here. Opaque, convex materials only.
+// the Material; only shape parameters are here. Opaque, convex materials only. Not all conserve
+// energy: of a perfect mirror's material He's model reflects up to 1.041 (near grazing, sigma/lambda
+// about 0.3), Schlick's up to 1.57, Oren & Nayar's up to 1.05 of the body's reflectance.
 
 /// The paper's model: Material::c, sigma, masking, facet_interreflection.
 struct FacetModel {};

@@ -27,4 +27,7 @@ struct OpticalConstants {
 /// Other names of the tables, first, with the name of the table: ("gold", "Au").
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> optical_constants_aliases();
 
+/// Lambert extinction K = 4 pi k / lambda [1/m] of the material's bulk, on the grid of k.
+[[nodiscard]] SampledSpectrum extinction_of(const OpticalConstants& constants);
+
 }  // namespace atrium::material

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,17 @@ class SpectralBasis {
 
   [[nodiscard]] static SpectralBasis grey();
   [[nodiscard]] static SpectralBasis rgb();
-  /// \param lanes  4 or 8 bands over 380-730 nm. \throws std::invalid_argument for other numbers.
-  /// Edges: near equal shares of D65 * (x_bar + y_bar + z_bar), moved so that the Rec. 709
-  /// primaries lie inside the bands' chromaticities; else no from_rgb >= 0 exists.
+  /// \param lanes  4, 8, 16 or 32 bands over 380-730 nm. \throws std::invalid_argument for other
+  /// numbers. Edges: near equal shares of D65 * (x_bar + y_bar + z_bar), moved so that the Rec. 709
+  /// primaries lie inside the bands' chromaticities; else no from_rgb >= 0 exists. 16 and 32 cut
+  /// the 8 bands into equal shares. More than kMaxLanes are computed in packs().
   [[nodiscard]] static SpectralBasis bands(int lanes);
+
+  /// Bases of at most kMaxLanes lanes that share out this one's: each resolves to its part of the
+  /// lanes, its to_rgb is those columns, and the RGB of the packs add up to the whole's. So the
+  /// RGB of one pack is no colour by itself: white is not (1, 1, 1), channels may be negative. Up
+  /// to kMaxLanes lanes: the basis itself.
+  [[nodiscard]] std::vector<SpectralBasis> packs() const;
 
   [[nodiscard]] Kind kind() const { return kind_; }
   [[nodiscard]] int lanes() const { return lanes_; }
@@ -74,6 +82,7 @@ class SpectralBasis {
   SpectralBasis() = default;
   // Lanes of samples relative to D65 on the 5 nm grid, kept in [0, highest].
   [[nodiscard]] Eigen::VectorXd lanes_of(const Eigen::RowVectorXd& samples, double highest) const;
+
   Kind kind_ = Kind::Grey;
   int lanes_ = 1;
   std::vector<double> wavelengths_nm_;
@@ -81,6 +90,8 @@ class SpectralBasis {
   Eigen::Matrix<float, 3, Eigen::Dynamic> to_rgb_;    // 3 x lanes
   Eigen::Matrix<float, Eigen::Dynamic, 3> from_rgb_;  // lanes x 3
   Eigen::MatrixXd response_;                          // lanes x 5 nm grid, rows sum to 1
+  std::shared_ptr<const SpectralBasis> whole_;        // of a pack: what it is part of
+  int first_ = 0;                                     // of a pack: its first lane there
 };
 
 // ---- inline parts: used per sample ----

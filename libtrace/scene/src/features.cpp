@@ -100,20 +100,9 @@ std::vector<Decision> decide(const Features& f) {
   add("environment", f.environment, "light from outside the model", "no environment");
   add("colour lanes", f.chromatic || f.wavelength_data, "colours differ between lanes",
       "grey scene: one lane");
-  add("wavelengths", f.wavelength_data, "spectra or optical constants are given", "RGB data only");
+  add("wavelength data of materials", f.wavelength_data, "spectra or optical constants are given",
+      "numbers and RGB only");
   return d;
-}
-
-material::SpectralBasis choose_basis(const Features& f, const std::string& request) {
-  using material::SpectralBasis;
-  if (request == "auto") {
-    if (f.wavelength_data) return SpectralBasis::bands(8);
-    return f.chromatic ? SpectralBasis::rgb() : SpectralBasis::grey();
-  }
-  if (request == "grey") return SpectralBasis::grey();
-  if (request == "rgb") return SpectralBasis::rgb();
-  if (request == "4" || request == "8") return SpectralBasis::bands(request == "4" ? 4 : 8);
-  throw Error("spectrum '" + request + "': known are auto, grey, rgb, 4, 8");
 }
 
 }  // namespace atrium::scene

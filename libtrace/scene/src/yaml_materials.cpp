@@ -103,8 +103,7 @@ void read_roughness(const YamlMap& map, Material& m) {
 material::LobeModel read_lobe(const YamlView& view) {
   using namespace material;
   if (!view.is_map()) {
-    view.choice({"facets"});
-    return FacetModel{};
+    if (view.choice({"facets"}) == 0) return FacetModel{};
   }
   const YamlMap map = view.map("lobe", {"phong", "blinn_phong", "cook_torrance", "he", "oren_nayar",
                                         "hanrahan_krueger", "schlick", "ggx"});
@@ -230,7 +229,7 @@ void read_body(const YamlScene& scene, const YamlMap& map, Material& m) {
   if (map.has("body")) m.body_reflectance = color("body", 1.0);
   if (map.has("body_transmission")) m.body_transmittance = color("body_transmission", 1.0);
   if (map.has("tint")) m.transmission_tint = color("tint", 1.0);
-  if (map.has("extinction")) m.extinction = color("extinction", kUnlimited);
+  if (const auto v = map.find("extinction")) m.extinction = read_extinction(scene, *v);
   if (const auto v = map.find("thickness")) m.pane_thickness = v->positive();
   if (const auto v = map.find("one_sided")) m.one_sided = v->boolean();
   if (const auto v = map.find("ray_falloff")) {

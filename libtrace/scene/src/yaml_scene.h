@@ -55,6 +55,9 @@ struct YamlScene {
 [[nodiscard]] material::SpectralValue read_emitted(const YamlScene& scene, const YamlMap& map,
                                                    std::string_view key);
 void read_spectra(YamlScene& scene, const YamlView& view);
+
+/// `extinction`: a spectral value [1/m], or an optical table's name: K = 4 pi k / lambda.
+[[nodiscard]] material::SpectralValue read_extinction(const YamlScene& scene, const YamlView& view);
 /// Sets material.n and material.kappa.
 void read_refraction(const YamlScene& scene, const YamlView& view, material::Material& material);
 

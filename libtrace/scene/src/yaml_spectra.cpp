@@ -72,10 +72,14 @@ SampledSpectrum blackbody(double kelvin) {
 SampledSpectrum relative_to_d65(const SampledSpectrum& power, const YamlView& view) {
   const SampledSpectrum& d65 = *material::find_illuminant("D65");
   SampledSpectrum ratio;
-  for (double nm = kFirstNm; nm <= kLastNm; nm += kStepNm) {
-    ratio.wavelength_nm.push_back(nm);
-    ratio.value.push_back(power.at(nm) / d65.at(nm));
-  }
+  for (double nm = kFirstNm; nm <= kLastNm; nm += kStepNm) ratio.wavelength_nm.push_back(nm);
+  // Lines between the steps keep their samples.
+  std::copy_if(power.wavelength_nm.begin(), power.wavelength_nm.end(),
+               std::back_inserter(ratio.wavelength_nm), [](double nm) {
+                 return nm > kFirstNm && nm < kLastNm && std::fmod(nm - kFirstNm, kStepNm) != 0.0;
+               });
+  std::sort(ratio.wavelength_nm.begin(), ratio.wavelength_nm.end());
+  for (const double nm : ratio.wavelength_nm) ratio.value.push_back(power.at(nm) / d65.at(nm));
   const double luminance = material::xyz_of_reflectance(ratio, d65).y();
   if (!(luminance > 0.0)) view.fail("the colour of a light must not be black");
   for (double& v : ratio.value) v /= luminance;
@@ -237,6 +241,15 @@ void read_refraction(const YamlScene& scene, const YamlView& view, material::Mat
     material.kappa = quotient(constants->k, constants->n, view);
     if (material::max_value(material.kappa) <= 0.0) material.kappa = 0.0;
   }
+}
+
+material::SpectralValue read_extinction(const YamlScene& scene, const YamlView& view) {
+  if (!view.is_number() && !view.is_sequence() && !view.is_map() &&
+      !scene.spectra.contains(view.text())) {
+    if (const auto* constants = material::find_optical_constants(view.text()))
+      return material::extinction_of(*constants);
+  }
+  return read_spectral(scene, view, 0.0, std::numeric_limits<double>::max());
 }
 
 }  // namespace atrium::scene

@@ -150,9 +150,13 @@ Estimate sampled_albedo(const Bsdf<3>& bsdf, const Vec3f& wo, std::uint32_t even
   });
 }
 
-// No surface sends out more than arrives, seen from outside or, for solids, from inside.
+// No surface sends out more than arrives, seen from outside or, for solids, from inside. Schlick's
+// and He's models make no such promise (lobe_model.h).
 TEST(Bsdf, AlbedoNeverExceedsOne) {
-  for (const Case& c : cases())
+  for (const Case& c : cases()) {
+    if (std::holds_alternative<SchlickModel>(c.material.lobe) ||
+        std::holds_alternative<HeModel>(c.material.lobe))
+      continue;
     for (const bool front : {true, false})
       for (const double theta : {0.0, 30.0, 60.0, 80.0, 89.0}) {
         SCOPED_TRACE(std::string(c.name) + (front ? " front " : " back ") + std::to_string(theta));
@@ -161,6 +165,7 @@ TEST(Bsdf, AlbedoNeverExceedsOne) {
         EXPECT_LE(a.mean, 1.0 + 4.0 * a.error + 1e-5);
         EXPECT_GE(a.mean, 0.0);
       }
+  }
 }
 
 // Lossless interfaces: everything is reflected or transmitted. Smooth ones exactly, rough ones but
@@ -180,9 +185,10 @@ TEST(Bsdf, SmoothLosslessInterfacesReturnEverything) {
 // The density integrates to the probability that a sample is scattered (not absorbed, not Dirac),
 // and f cos integrates to the mean weight: uniform directions against the BSDF's own samples.
 TEST(Bsdf, SamplesAgreeWithDensityAndValues) {
-  constexpr int kSamples = 200000;
   constexpr double kSphere = 4.0 * std::numbers::pi;
-  for (const Case& c : cases())
+  for (const Case& c : cases()) {
+    // He's sum costs a hundred times the others' evaluation.
+    const int kSamples = std::holds_alternative<HeModel>(c.material.lobe) ? 10000 : 200000;
     for (const std::uint32_t events : {std::uint32_t{kAllEvents}, std::uint32_t{kSpecularEvents},
                                        std::uint32_t{kDiffuseEvents}}) {
       const Bsdf3 b(c.material);
@@ -225,6 +231,7 @@ TEST(Bsdf, SamplesAgreeWithDensityAndValues) {
         EXPECT_NEAR(by_value.mean, by_sampling.mean, 5.0 * (by_value.error + by_sampling.error));
       }
     }
+  }
 }
 
 // Helmholtz: f_r(a, b) = f_r(b, a); f_t(l -> b) / n_b^2 = f_t(b -> l) / n_l^2 with the two sides
@@ -297,7 +304,9 @@ TEST(Bsdf, RoughGlassTendsToSmoothGlass) {
 
 // Coupled body under a smooth interface: albedo = F(mu) + rho_b B(mu), B = 1 - F.
 TEST(Bsdf, CoupledPlasticHasTheAlbedoOfItsParts) {
-  const Bsdf3 b(coupled(0.8, 1.5, kSmooth));
+  Material plastic = coupled(0.8, 1.5, kSmooth);
+  plastic.fresnel_error = 0.0;
+  const Bsdf3 b(plastic);
   for (const double theta : {0.0, 45.0, 75.0}) {
     const Vec3f wo = direction(theta, 0.0);
     const double f = fresnel_dielectric(static_cast<double>(wo.z()), 1.5).mean();

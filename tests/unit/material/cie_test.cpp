@@ -57,5 +57,45 @@ TEST(Cie, RgbMatricesAreInverseAndAgreeWithTheStandard) {
   EXPECT_NEAR(xyz_from_rgb().row(1).sum(), 1.0, 1e-14);
 }
 
+// Light of one wavelength, wherever it falls and however narrow, has 683 V(lambda) per W; over 1 nm
+// V is straight but for its corners at the nodes. A single sample is constant: illuminant E.
+TEST(Cie, EmissionOnAnyGrid) {
+  for (const double nm : {451.2, 551.3, 602.4, 653.9}) {
+    const SampledSpectrum line =
+        make_sampled_spectrum({nm - 0.5, nm, nm + 0.5}, {0.0, 2.0, 0.0});  // integral 1
+    const Eigen::Vector3d xyz = xyz_of_emission(line);
+    EXPECT_NEAR(xyz.y() / (683.0 * cie_y_bar().at(nm)), 1.0, 1e-12) << nm;
+    EXPECT_LT((rgb_of_emission(line) - rgb_from_xyz() * xyz).norm(), 1e-12 * xyz.norm());
+  }
+  const Eigen::Vector3d constant = xyz_of_emission(make_sampled_spectrum({500.0}, {2.0}));
+  EXPECT_NEAR(constant.y(), 2.0 * 683.0 * 106.857, 0.7);  // integral of y_bar, CIE 15
+  EXPECT_NEAR(constant.x() / constant.y(), 1.0, 1e-3);
+  // The same spectrum on a 1 nm grid: the product is integrated instead of summed, which differs
+  // by sixths of (step of spectrum) (step of function).
+  const SampledSpectrum& f11 = *find_illuminant("F11");
+  SampledSpectrum fine;
+  for (double nm = 380.0; nm <= 780.0; nm += 1.0) {
+    fine.wavelength_nm.push_back(nm);
+    fine.value.push_back(f11.at(nm));
+  }
+  const Eigen::Vector3d a = xyz_of_emission(f11), b = xyz_of_emission(fine);
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff() / a.y(), 0.01);
+}
+
+// Second method for products of fine spectra: a brute sum over 0.001 nm.
+TEST(Cie, LinesOfAFineProductAreMultipliedBeforeTheSum) {
+  const SampledSpectrum filter =
+      make_sampled_spectrum({540.0, 549.0, 550.0, 551.0, 560.0}, {0.0, 0.1, 1.0, 0.1, 0.0});
+  const SampledSpectrum lamp = make_sampled_spectrum(
+      {380.0, 547.9, 548.0, 548.1, 550.3, 550.4, 550.5, 780.0}, {1, 1, 60, 1, 1, 50, 1, 1});
+  double passed = 0.0, white = 0.0;
+  for (int i = 0; i < 470000; ++i) {
+    const double nm = 360.0 + (i + 0.5) * 1e-3;
+    passed += filter.at(nm) * lamp.at(nm) * cie_y_bar().at(nm);
+    white += lamp.at(nm) * cie_y_bar().at(nm);
+  }
+  EXPECT_NEAR(xyz_of_reflectance(filter, lamp).y(), passed / white, 1e-6);
+}
+
 }  // namespace
 }  // namespace atrium::material

@@ -15,14 +15,15 @@ namespace {
 std::atomic<long> allocations{0};
 }  // namespace
 
-// Counts allocations of the whole program, to show that evaluation makes none.
-void* operator new(std::size_t size) {
+// Counts allocations of the whole program, to show that evaluation makes none. Not inlined: seeing
+// free() at a deletion, the compiler warns of a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size)) return p;
   throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace atrium::material {
 namespace {
@@ -144,6 +145,7 @@ double scan(const FresnelTerm<N>& term, const Spectrum<N>& n, const Spectrum<N>&
     at(u);
     at(u * u);
     at(std::exp2(-40.0f * u));
+    at(1.0f - std::exp2(-24.0f * u));
   }
   return worst;
 }
@@ -232,6 +234,18 @@ TEST(FresnelTerm, KeepsItsBoundAndTellsItsError) {
     EXPECT_GT(chosen[static_cast<int>(form)], 0) << "never chosen: " << name(form);
 }
 
+// Where |N| < 1 the series diverge, with peaks too narrow for the angles measured: order 1 was
+// taken here, with errors of 0.058 and 0.50.
+TEST(FresnelTerm, DoesNotTrustDivergentSeries) {
+  const struct {
+    float n, k, bound;
+  } cases[] = {{0.0332954f, 0.0097432f, 0.05f}, {0.0104764f, 1.5256e-5f, 0.2f}};
+  for (const auto& q : cases) {
+    const Spectrum<1> n(q.n), k(q.k);
+    EXPECT_LE(scan(FresnelTerm<1>(n, k, q.bound), n, k, 6000), static_cast<double>(q.bound));
+  }
+}
+
 // No cheaper form would have done: each one before the chosen one in the order of cost misses.
 TEST(FresnelTerm, IsTheCheapestThatKeepsTheBound) {
   constexpr std::array order{FresnelForm::Schlick,          FresnelForm::Order0,
@@ -243,6 +257,8 @@ TEST(FresnelTerm, IsTheCheapestThatKeepsTheBound) {
       const FresnelTerm<4> term(ns, ks, bound);
       for (const FresnelForm form : order) {
         if (form == term.form()) break;
+        const bool series = form == FresnelForm::Order1 || form == FresnelForm::Order2;
+        if (series && (ns * ns + ks * ks).min() <= 1.0f) continue;  // diverge
         EXPECT_GT(1.05f * FresnelTerm<4>(ns, ks, form).error(), bound)
             << n << " " << k << name(form);
       }

@@ -56,5 +56,12 @@ TEST(OpticalConstants, EveryTableIsComplete) {
   }
 }
 
+// K = 4 pi k / lambda, in 1/m with lambda in metres: water absorbs a third per metre at 650 nm.
+TEST(OpticalConstants, ExtinctionFollowsFromK) {
+  const SampledSpectrum water = extinction_of(*find_optical_constants("water"));
+  EXPECT_NEAR(water.at(650.0), 12.566370614359172 * 1.64e-8 / 650e-9, 1e-9);  // Hale & Querry
+  EXPECT_EQ(water.wavelength_nm, find_optical_constants("water")->k.wavelength_nm);
+}
+
 }  // namespace
 }  // namespace atrium::material

@@ -67,13 +67,14 @@ TEST(SpectralBasis, WhiteIsOneInEveryLane) {
   check_white_and_round_trips<3>(SpectralBasis::rgb());
   check_white_and_round_trips<4>(SpectralBasis::bands(4));
   check_white_and_round_trips<8>(SpectralBasis::bands(8));
-  EXPECT_THROW((void)SpectralBasis::bands(5), std::invalid_argument);
+  for (const int lanes : {-1, 0, 1, 3, 5, 12, 64})
+    EXPECT_THROW((void)SpectralBasis::bands(lanes), std::invalid_argument) << lanes;
 }
 
 // from_rgb is non-negative, its rows and those of to_rgb sum to 1 in float, and the product is the
 // identity: every RGB in [0, 1] gives band values in [0, 1] and comes back.
 TEST(SpectralBasis, BandMatricesAreStochasticAndInverse) {
-  for (const int lanes : {4, 8}) {
+  for (const int lanes : {4, 8, 16, 32}) {
     SCOPED_TRACE(lanes);
     const SpectralBasis basis = SpectralBasis::bands(lanes);
     const auto& t = basis.to_rgb_matrix();
@@ -247,6 +248,62 @@ TEST(SpectralBasis, MeansOfAnIndexStayInItsRange) {
       EXPECT_GE(mean.min(), static_cast<float>(min_value(*table)));
       EXPECT_LE(mean.max(), static_cast<float>(max_value(*table)));
     }
+  }
+}
+
+// RGB of all packs together.
+Rgb rgb_of_packs(const SpectralBasis& basis, const SpectralValue& value, bool emission) {
+  Rgb sum;
+  for (const SpectralBasis& pack : basis.packs())
+    sum += pack.to_rgb(emission ? pack.resolve_emission<8>(value) : pack.resolve<8>(value));
+  return sum;
+}
+
+TEST(SpectralBasis, PacksShareOutTheLanes) {
+  for (const int lanes : {16, 32}) {
+    SCOPED_TRACE(lanes);
+    const SpectralBasis basis = SpectralBasis::bands(lanes);
+    const std::vector<SpectralBasis> packs = basis.packs();
+    ASSERT_EQ(packs.size(), static_cast<std::size_t>(lanes / 8));
+    for (std::size_t p = 0; p < packs.size(); ++p) {
+      ASSERT_EQ(packs[p].lanes(), 8);
+      EXPECT_EQ(packs[p].packs().size(), 1u);
+      const auto first = static_cast<Eigen::Index>(8 * p);
+      EXPECT_EQ(packs[p].to_rgb_matrix(), basis.to_rgb_matrix().middleCols(first, 8));
+      EXPECT_EQ(packs[p].from_rgb_matrix(), basis.from_rgb_matrix().middleRows(first, 8));
+      for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(packs[p].wavelengths_nm()[i], basis.wavelengths_nm()[8 * p + i]);
+      const Spectrum<8> white = packs[p].resolve<8>(make_rgb(1, 1, 1));
+      for (int i = 0; i < 8; ++i) EXPECT_NEAR(white[i], 1.0f, 3e-7f);
+    }
+    // Colours of single spectra are exact, as they are for 8 bands.
+    EXPECT_LT(distance(rgb_of_packs(basis, make_rgb(0.9, 0.2, 0.1), false), {0.9, 0.2, 0.1}), 2e-6);
+    for (const char* name : {"Au", "Cu", "Ti"}) {
+      const SampledSpectrum f = metal_reflectance(*find_optical_constants(name));
+      EXPECT_LT(distance(rgb_of_packs(basis, f, false), exact_rgb(f)), 2e-4) << name;
+    }
+    const SampledSpectrum& a = *find_illuminant("A");
+    const Eigen::Vector3d nits = nits_of(a);
+    EXPECT_LT(distance(rgb_of_packs(basis, a, true), nits), 2e-4 * nits.maxCoeff());
+  }
+  EXPECT_EQ(SpectralBasis::bands(8).packs().size(), 1u);
+  EXPECT_EQ(SpectralBasis::rgb().packs().front().lanes(), 3);
+}
+
+// Finer bands are cut from the eight: every second edge of 16 is an edge of 8, and so on, so
+// the luminances of the parts add up.
+TEST(SpectralBasis, FinerBandsHalveTheEight) {
+  const auto luminance_of = [](const SpectralBasis& basis) {
+    return Eigen::RowVectorXf(xyz_from_rgb().cast<float>().row(1) * basis.to_rgb_matrix());
+  };
+  const Eigen::RowVectorXf eight = luminance_of(SpectralBasis::bands(8));
+  for (const int lanes : {16, 32}) {
+    const SpectralBasis basis = SpectralBasis::bands(lanes);
+    const Eigen::RowVectorXf fine = luminance_of(basis);
+    for (int i = 0; i < 8; ++i)
+      EXPECT_NEAR(fine.segment(i * lanes / 8, lanes / 8).sum(), eight[i], 1e-6f);
+    for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(lanes); ++i)
+      EXPECT_LT(basis.wavelengths_nm()[i], basis.wavelengths_nm()[i + 1]);
   }
 }
 

@@ -247,6 +247,62 @@ TEST_F(YamlScenes, AliasesAreCopies) {
 
 // ---- materials ----
 
+// Names of optical tables: n and kappa, and K = 4 pi k / lambda. A spectrum of the scene comes
+// first.
+TEST_F(YamlScenes, TablesAndIlluminantsByName) {
+  const Model model = read(
+      "spectra:\n"
+      "  silver: 0.25\n"
+      "materials:\n"
+      "  bath: {ior: water, medium: solid, extinction: Water}\n"
+      "  pane: {ior: window-glass, medium: pane, extinction: soda-lime-glass}\n"
+      "  own: {ior: 1.5, medium: solid, extinction: silver}\n"
+      "lights:\n"
+      "  - {name: A, point: {position: [0, 1, 0], intensity: 10, color: A}}\n"
+      "  - {name: D65, point: {position: [0, 1, 0], intensity: 10, color: D65}}\n"
+      "  - {name: E, point: {position: [0, 1, 0], intensity: 10, color: E}}\n"
+      "  - {name: F2, point: {position: [0, 1, 0], intensity: 10, color: F2}}\n"
+      "  - {name: F11, point: {position: [0, 1, 0], intensity: 10, color: f11}}\n");
+  const material::OpticalConstants& water = *material::find_optical_constants("water");
+  const auto& bath = std::get<SampledSpectrum>(material_named(model, "bath").extinction);
+  const auto& pane = std::get<SampledSpectrum>(material_named(model, "pane").extinction);
+  for (const double nm : {450.0, 650.0}) {
+    EXPECT_NEAR(bath.at(nm) * nm * 1e-9 / (4.0 * std::numbers::pi * water.k.at(nm)), 1.0, 1e-12);
+    EXPECT_GT(pane.at(nm), 0.0);
+  }
+  EXPECT_NEAR(bath.at(650.0), 0.317, 0.0005);  // Hale & Querry 1973: k = 1.64e-8
+  EXPECT_EQ(number(material_named(model, "own").extinction), 0.25);
+  ASSERT_EQ(model.lights.size(), 5u);
+  const material::SpectralBasis rgb = material::SpectralBasis::rgb();
+  for (const Light& light : model.lights) {
+    SCOPED_TRACE(light.name);
+    const Rgb lanes = rgb.resolve<3>(std::get<PointLight>(light.kind).intensity);
+    const SampledSpectrum& table = *material::find_illuminant(light.name);
+    const Eigen::Vector3d xyz = material::xyz_of_emission(table);
+    const Eigen::Vector3d colour = material::rgb_from_xyz() * (10.0 * xyz / xyz.y());
+    // 380-730 nm instead of the whole table, and the white of the tables.
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(lanes[c], std::max(0.0, colour[c]), 0.02);
+  }
+  EXPECT_NE(error("materials:\n  a: {extinction: Xx}\n").find("'Xx'"), std::string::npos);
+}
+
+// A lamp of lines finer than 5 nm keeps the ratio of their powers: 435.8 and 546.1 nm, 1 nm wide.
+TEST_F(YamlScenes, LinesBetweenTheStepsCount) {
+  const Model model = read(
+      "lights:\n"
+      "  - {name: lamp, point: {position: [0, 1, 0], intensity: 1, color: {wavelengths:"
+      " [380, 435.3, 435.8, 436.3, 546.9, 547.4, 547.9, 730], values: [0, 0, 2, 0, 0, 1, 0, "
+      "0]}}}\n");
+  const auto& ratio =
+      std::get<SampledSpectrum>(std::get<PointLight>(model.lights.at(0).kind).intensity);
+  const SampledSpectrum& d65 = *material::find_illuminant("D65");
+  EXPECT_NEAR((ratio.at(435.8) * d65.at(435.8)) / (ratio.at(547.4) * d65.at(547.4)), 2.0, 1e-12);
+  const Eigen::Vector3d xyz = material::xyz_of_reflectance(ratio, d65);
+  const auto sum = [](const SampledSpectrum& cmf) { return 2.0 * cmf.at(435.8) + cmf.at(547.4); };
+  EXPECT_NEAR(xyz.y(), 1.0, 1e-12);
+  EXPECT_NEAR(xyz.z(), sum(material::cie_z_bar()) / sum(material::cie_y_bar()), 1e-3);
+}
+
 TEST_F(YamlScenes, MaterialsInThePapersTerms) {
   const Model model = read(
       "materials:\n"

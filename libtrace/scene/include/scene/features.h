@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "material/spectral_basis.h"
 #include "scene/scene.h"
 
 namespace atrium::scene {
@@ -38,8 +39,24 @@ struct Decision {
 };
 [[nodiscard]] std::vector<Decision> decide(const Features& features);
 
-/// The basis that represents the scene without paying for more: grey, RGB or 8 bands.
-/// \param request  "auto", "rgb", "grey", "4" or "8".  \throws Error for anything else.
-[[nodiscard]] material::SpectralBasis choose_basis(const Features& features, const std::string& request);
+/// How many spectral lanes a scene is computed with, and why.
+struct BasisChoice {
+  material::SpectralBasis basis;
+  std::string reason;                ///< one line
+  bool within_bound = true;          ///< false: even the largest basis misses the bound
+  std::size_t colours_compared = 0;  ///< what the prediction looked at; 0: nothing is sampled
+};
+
+inline constexpr double kJustNoticeable = 1.0;  ///< CIEDE2000
+
+/// The basis that represents the scene without paying for more. Grey or RGB if nothing is given by
+/// wavelength; else the first of RGB, 4 and 8 bands whose predicted colour error (see
+/// material::ColourErrorPredictor) is at most `bound`. Textures and vertex colours count as six
+/// colours of medium saturation where a light is sampled.
+/// \param request  "auto", or what is wanted: "rgb", "grey", "4" or "8".
+/// \param bound    CIEDE2000, > 0.  \throws Error for any other request.
+[[nodiscard]] BasisChoice choose_basis(const Scene& scene, const Features& features,
+                                       const std::string& request,
+                                       double bound = kJustNoticeable);
 
 }  // namespace atrium::scene
