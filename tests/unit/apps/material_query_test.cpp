@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -150,6 +152,9 @@ TEST(MaterialQuery, Facets) {
       {"sample_rayleigh",
        R"("c": 3, "u": 0.7)",
        {{"delta", 0.3657523150677176}, {"pdf", 0.87890185225902466}}},
+      {"sample_rayleigh",
+       R"("c": 9e-4, "u": 0.5)",
+       {{"delta", 1.1107204570544587}, {"pdf", 0.15991824527728091}}},
       {"sample_rayleigh", R"("c": 0, "u": 0.25)", {{"delta", kPi / 4.0}}},
       {"G_vcavity",
        R"("nl": 0.28, "nb": 0.8, "nh": 0.5692099788303083, "bh": 0.9486832980505138)",
@@ -479,6 +484,13 @@ TEST(MaterialQuery, TimeIsLinear) {
   }
   const std::string answers = answer_queries(text + "]");
   EXPECT_EQ(std::count(answers.begin(), answers.end(), '\n'), 20002);
+}
+
+// docs/material_tool.md holds what `atrium material eval --kinds markdown` prints.
+TEST(MaterialQuery, DocumentationIsUpToDate) {
+  std::ifstream file(std::string(ATRIUM_SOURCE_DIR) + "/docs/material_tool.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find(atrium::material_query::kinds_as_markdown()), std::string::npos);
 }
 
 TEST(MaterialQuery, DescribesEveryKind) {
