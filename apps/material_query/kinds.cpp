@@ -33,7 +33,7 @@ const std::vector<Kind>& all_kinds() {
   static const std::vector<Kind> all = [] {
     std::vector<Kind> kinds;
     for (const auto& list : {fresnel_kinds(), paper_kinds(), facet_kinds(), interface_kinds(),
-                             parameter_kinds(), model_kinds(), material_kinds()})
+                             parameter_kinds(), model_kinds(), material_kinds(), bsdf_kinds()})
       kinds.insert(kinds.end(), list.begin(), list.end());
     return kinds;
   }();

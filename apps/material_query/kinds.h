@@ -46,6 +46,7 @@ struct Kind {
 [[nodiscard]] std::vector<Kind> parameter_kinds();
 [[nodiscard]] std::vector<Kind> model_kinds();
 [[nodiscard]] std::vector<Kind> material_kinds();
+[[nodiscard]] std::vector<Kind> bsdf_kinds();
 [[nodiscard]] const std::vector<Kind>& all_kinds();
 
 // ---- inputs that many kinds share ----
@@ -70,10 +71,8 @@ struct Kind {
 [[nodiscard]] inline Input roughness() {
   return number("c", "roughness: D ~ exp(-c^2 delta^2) [1/rad]", between(0.0, 1e6));
 }
-[[nodiscard]] inline Input to_light() { return direction("l", "unit vector to the light"); }
-[[nodiscard]] inline Input to_viewer() {
-  return direction("b", "unit vector to the viewer, z >= 0");
-}
+[[nodiscard]] inline Input to_light() { return direction("l", "to the light"); }
+[[nodiscard]] inline Input to_viewer() { return direction("b", "to the viewer, z >= 0"); }
 [[nodiscard]] inline Input share(std::string_view name, std::string_view meaning) {
   return number(name, meaning, between(0.0, 1.0));
 }

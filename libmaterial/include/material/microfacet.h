@@ -81,11 +81,11 @@ Real GaussianFacets<Real>::density(const Vec3<Real>& h) const {
 
 template <class Real>
 Real GaussianFacets<Real>::sample_delta(Real u) const {
-  // delta = sqrt(-log(1 - u q)) / c tends to (pi / 2) sqrt(u) for c -> 0; below c = 1e-3 the two
-  // agree to float precision and the quotient would lose digits.
+  // delta = sqrt(-log(1 - u q)) / c tends to (pi / 2) sqrt(u) for c -> 0; below c = 1e-15 the two
+  // agree to all digits, and farther down c^2 would underflow.
   constexpr Real half_pi = Real(0.5) * std::numbers::pi_v<Real>;
   const Real delta =
-      c_ < Real(1e-3) ? half_pi * std::sqrt(u) : std::sqrt(-std::log1p(-u * q_)) / c_;
+      c_ < Real(1e-15) ? half_pi * std::sqrt(u) : std::sqrt(-std::log1p(-u * q_)) / c_;
   return std::min(delta, half_pi);
 }
 
@@ -103,7 +103,7 @@ Real GaussianFacets<Real>::pdf(Real delta) const {
   if (!(delta <= Real(0.5) * pi)) return Real(0);
   const Real x = c_ * delta;
   const Real ratio = delta > Real(1e-4) ? delta / std::sin(delta) : Real(1) + delta * delta / 6;
-  const Real scale = c_ < Real(1e-3) ? Real(4) / (pi * pi) : c_ * c_ / q_;
+  const Real scale = c_ < Real(1e-15) ? Real(4) / (pi * pi) : c_ * c_ / q_;
   return scale / pi * ratio * std::exp(-x * x);
 }
 

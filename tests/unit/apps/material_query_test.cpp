@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -150,6 +152,9 @@ TEST(MaterialQuery, Facets) {
       {"sample_rayleigh",
        R"("c": 3, "u": 0.7)",
        {{"delta", 0.3657523150677176}, {"pdf", 0.87890185225902466}}},
+      {"sample_rayleigh",
+       R"("c": 9e-4, "u": 0.5)",
+       {{"delta", 1.1107204570544587}, {"pdf", 0.15991824527728091}}},
       {"sample_rayleigh", R"("c": 0, "u": 0.25)", {{"delta", kPi / 4.0}}},
       {"G_vcavity",
        R"("nl": 0.28, "nb": 0.8, "nh": 0.5692099788303083, "bh": 0.9486832980505138)",
@@ -314,6 +319,38 @@ TEST(MaterialQuery, NamedMaterials) {
       value(gold, "F0"), 1e-15);
 }
 
+/// One number of an array of an answer.
+double value(const std::string& answer, const std::string& name, int i) {
+  std::size_t at = answer.find("\"" + name + "\": [");
+  if (at == std::string::npos) return std::nan("");
+  at = answer.find('[', at) + 1;
+  for (; i > 0; --i) at = answer.find(',', at) + 1;
+  return std::strtod(answer.c_str() + at, nullptr);
+}
+
+// The renderer's material agrees with the kernel to single precision.
+TEST(MaterialQuery, BsdfOfTheRenderer) {
+  const std::string pair = R"("l": [0.36, 0.48, 0.8], "b": [-0.6, 0, 0.8], "c": 5, "n": 1.5)";
+  const std::string plastic =
+      answer("bsdf", pair + R"(, "k_df": 0.4, "k_rg": 0.6, "rho": [0.8, 0.4, 0])");
+  const double lobe = 0.6 * value(answer("brdf_spec", pair + R"(, "k": 0)"), "vcavity");
+  EXPECT_NEAR(value(plastic, "lobe", 1) / lobe, 1.0, 1e-5) << plastic;
+  EXPECT_NEAR(value(plastic, "diffuse", 0), 0.4 * 0.8 / std::numbers::pi, 1e-6);
+  EXPECT_NEAR(value(plastic, "f", 2) / lobe, 1.0, 1e-5);
+  EXPECT_GT(value(plastic, "pdf"), 0.0);
+  // A smooth mirror has no density; its weight over the probability of the event is F of gold.
+  const std::string mirror =
+      answer("bsdf_sample", R"("material": "gold", "b": [-0.6, 0, 0.8], "u": [0.5, 0.5, 0.5])");
+  EXPECT_NE(mirror.find(R"("event": "mirror")"), std::string::npos) << mirror;
+  EXPECT_NEAR(value(mirror, "l", 0), 0.6, 1e-7);
+  EXPECT_NEAR(value(mirror, "l", 2), 0.8, 1e-7);
+  EXPECT_EQ(value(mirror, "pdf"), 0.0);
+  EXPECT_GT(value(mirror, "weight", 0), value(mirror, "weight", 2));  // yellow
+  const std::string glass =
+      answer("bsdf_sample", R"("material": "glass", "b": [0, 0, 1], "u": [0.99, 0.5, 0.5])");
+  EXPECT_NE(glass.find("refraction"), std::string::npos) << glass;
+}
+
 // What the message of a refused query must say.
 void expect_refused(const std::string& kind, const std::string& inputs,
                     const std::vector<std::string>& words) {
@@ -374,6 +411,13 @@ TEST(MaterialQuery, RefusesWithNameValueAndRange) {
                  {"golt", "did you mean gold?"});
   expect_refused("optical_constants", R"("material": "gold", "lambda_nm": 1200)",
                  {"1200", "[360, 830] nm"});
+  expect_refused("bsdf", R"("l": [0, 0, 1], "b": [0, 0, 1])", {"missing input material or n"});
+  expect_refused("bsdf", R"("l": [0, 0, 1], "b": [0, 0, 1], "n": 1.5, "k_df": 0.5, "k_rg": 0.6)",
+                 {"k_df"});
+  expect_refused("bsdf_sample", R"("n": 1.5, "b": [0, 0, 1], "u": [0, 0])",
+                 {"u is [0, 0]", "array of 3"});
+  expect_refused("bsdf_sample", R"("n": 1.5, "b": [0, 0, 1], "u": [0, 0, 1])",
+                 {"u[2] is 1", "[0, 1)"});
   expect_refused("nrom", R"("c": 1)", {"unknown kind 'nrom'", "did you mean norm?"});
 }
 
@@ -440,6 +484,13 @@ TEST(MaterialQuery, TimeIsLinear) {
   }
   const std::string answers = answer_queries(text + "]");
   EXPECT_EQ(std::count(answers.begin(), answers.end(), '\n'), 20002);
+}
+
+// docs/material_tool.md holds what `atrium material eval --kinds markdown` prints.
+TEST(MaterialQuery, DocumentationIsUpToDate) {
+  std::ifstream file(std::string(ATRIUM_SOURCE_DIR) + "/docs/material_tool.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find(atrium::material_query::kinds_as_markdown()), std::string::npos);
 }
 
 TEST(MaterialQuery, DescribesEveryKind) {
