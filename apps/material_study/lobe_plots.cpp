@@ -145,7 +145,7 @@ std::vector<plot::Panel> wave_error_panels(const std::vector<WaveResult>& result
                       .y_title = "difference",
                       .log_x = true,
                       .log_y = true,
-                      .y_range = plot::Range{0.002, 1.0},
+                      .y_range = plot::Range{0.002, 10.0},
                       .curves = {},
                       .legend = plot::LegendPlace::TopLeft};
     for (const double tau : kWaveTaus) {

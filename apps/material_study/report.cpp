@@ -19,6 +19,11 @@ std::string signed_percent(double share) {
   std::snprintf(text, sizeof text, "%+.1f", 100.0 * share);
   return text;
 }
+std::string number(double value, const char* format) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
 std::string fixed(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -102,7 +107,7 @@ std::string wave_table(const std::vector<WaveResult>& results) {
   for (const WaveResult& r : results) {
     const WaveCase& w = r.wave;
     table.row({w.substance.name + ", tau = " + short_number(w.tau) + " lambda",
-               short_number(w.sigma), short_number(w.slope()) + (w.steep() ? " (steep)" : ""),
+               short_number(w.sigma), number(w.slope(), "%.3g") + (w.steep() ? " (steep)" : ""),
                fixed(r.lobe30.other_mirror, 3), fixed(r.lobe30.mirror, 3),
                fixed(r.lobe30.strict, 3), fixed(r.lobe30.seen, 3), fixed(r.lobe60.seen, 3),
                percent(r.image.error), percent(r.image.high), percent(r.image.rmse),

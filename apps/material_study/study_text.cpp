@@ -171,19 +171,23 @@ without their mirror part: what the shape of the distribution and the cavities m
 
 std::string about_verdict(const StudyOptions& options) {
   if (options.quick) return "";
-  return R"(Facets with the coherent mirror part have **no lower end in sigma / lambda** at correlation
-lengths of ten wavelengths and more: below sigma = 0.3 lambda both models are mirrors with a lobe
-that carries what the mirror lost, and Gamma = exp(-(4 pi sigma cos / lambda)^2) divides the light
-between them as He's theory does, to 0.002. The share of the mirror, not the shape of the lobe,
-makes the picture. The rule "sigma above a wavelength" is right for the shape of the lobe only: it is
-within 2 % from sigma = 0.5 lambda on.
+  return R"(Facets with the coherent mirror part have **no lower end in sigma / lambda** at correlation lengths
+of ten wavelengths and more. An error of the picture of **5 %** is kept at every sigma / lambda from
+0.05 on as long as the slope stays at 0.2 or below; one of **2 %** for certain only below 0.1 lambda,
+with differences of 1 to 3 % above. Below sigma = 0.3 lambda both models are mirrors with a lobe that
+carries what the mirror lost, and Gamma = exp(-(4 pi sigma cos / lambda)^2) divides the light between
+them as He's theory does, to 0.002. The share of the mirror, not the shape of the lobe, makes the
+picture. The rule "sigma above a wavelength" is about the shape of the lobe: from sigma = 0.5 lambda
+on it is the same to about 2 % while the slope is small.
 
-What ends the agreement is the slope: up to m = 0.2 the picture is good to 5 %, at m = 0.25 to about
-6 %, at m = 0.4 to 10 %, at m = 0.5 to 15 %. There He's shadowing, not its waves, makes the
+What ends the agreement is the slope: the picture differs by 3 % at m = 0.2, 4 to 6 % at m = 0.25, 7
+to 10 % at m = 0.4, 10 to 13 % at m = 0.5. There He's shadowing, not its waves, makes most of the
 difference; the column "D and G alone" shows the like between two models without waves.
 
-The rows with tau = 3 lambda show the limit on the other side: structure so fine that it diffracts
-the light wider than its slopes would.
+With structure as fine as tau = 3 lambda the light is diffracted wider than the slopes would send it:
+the picture differs by 3 to 6 % at every sigma, and all of the light beside the mirror goes elsewhere
+at sigma = 0.05 lambda (lobe difference as seen 0.23, which is all that the lobe holds). For such
+surfaces 10 % is what the facets can promise.
 
 )";
 }
