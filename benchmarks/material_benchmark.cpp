@@ -14,6 +14,7 @@
 #include "material/bsdf.h"
 #include "material/fresnel_forms.h"
 #include "material/optical_constants.h"
+#include "material/paper.h"
 
 namespace {
 
@@ -229,17 +230,64 @@ void register_bsdf(const std::string& name, const Material& description) {
   register_model<N>(name, Bsdf<N>(resolved, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f));
 }
 
+// A model of the literature on a metal (interface) or a body.
+Material literature(const LobeModel& lobe) {
+  Material m = is_body(lobe) ? lambert()
+                             : interface_of(Material::Medium::Opaque, 0.27, 2.95,
+                                            std::numeric_limits<double>::infinity());
+  m.lobe = lobe;
+  return m;
+}
+
+// The paper's bracket of C1 and C5, literally: diffuse and highlight of one light.
+template <int N>
+void register_paper() {
+  static const Material metal = interface_of(Material::Medium::Opaque, 0.27, 2.95, 10.0);
+  static const ResolvedMaterial<N> resolved = resolve_material<N>(metal, basis<N>());
+  const PaperSurface<N> surface(resolved, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f);
+  const Bsdf<N> scattering(resolved, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f);
+  benchmark::RegisterBenchmark(("model/paper mode, metal/eval/" + std::to_string(N)).c_str(),
+                               [=](benchmark::State& state) {
+                                 const Inputs in = make_inputs(scattering);
+                                 std::size_t i = 0;
+                                 for (auto _ : state) {
+                                   auto c1 = surface.direct(at(in.wo, i), at(in.wi, i));
+                                   ++i;
+                                   benchmark::DoNotOptimize(c1);
+                                 }
+                               });
+}
+
 template <int N>
 void register_models() {
   using enum Material::Medium;
   const double smooth = std::numeric_limits<double>::infinity();
   register_bsdf<N>("Lambert", lambert());
   register_bsdf<N>("metal, smooth", interface_of(Opaque, 0.27, 2.95, smooth));
-  register_bsdf<N>("metal, rough", interface_of(Opaque, 0.27, 2.95, 10.0));
+  const Material metal = interface_of(Opaque, 0.27, 2.95, 10.0);
+  register_bsdf<N>("metal, rough", metal);
+  Material variant = metal;
+  variant.fresnel_error = 0.0;
+  register_bsdf<N>("metal, rough, exact F", variant);
+  variant = metal;
+  variant.masking = Masking::Smith;
+  register_bsdf<N>("metal, rough, Smith", variant);
+  variant = metal;
+  variant.facet_interreflection = true;
+  register_bsdf<N>("metal, rough, interreflection", variant);
   register_bsdf<N>("plastic, smooth, coupled", plastic(smooth));
   register_bsdf<N>("plastic, rough, coupled", plastic(10.0));
   register_bsdf<N>("glass, smooth", interface_of(Solid, 1.5, 0.0, smooth));
   register_bsdf<N>("glass, rough", interface_of(Solid, 1.5, 0.0, 10.0));
+  register_bsdf<N>("Phong", literature(PhongModel{50.0}));
+  register_bsdf<N>("Blinn-Phong", literature(BlinnPhongModel{200.0}));
+  register_bsdf<N>("Cook-Torrance", literature(CookTorranceModel{0.1}));
+  register_bsdf<N>("He 1991", literature(HeModel{1e-6, 20e-6}));
+  register_bsdf<N>("Schlick 1994", literature(SchlickModel{0.2, 1.0}));
+  register_bsdf<N>("GGX", literature(GgxModel{0.1}));
+  register_bsdf<N>("Oren-Nayar", literature(OrenNayarModel{0.3}));
+  register_bsdf<N>("Hanrahan-Krueger", literature(HanrahanKruegerModel{1.0, 0.3}));
+  register_paper<N>();
 }
 
 template <int N>

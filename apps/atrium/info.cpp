@@ -186,7 +186,7 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
         std::string(scene.unit == scene::RadianceUnit::Nit ? "cd/m^2" : "W/(sr m^2)"));
   r.add("spectrum", loaded.basis.describe());
   r.add("reason for spectrum", loaded.basis_reason);
-  r.list("forms of the Fresnel reflectance", fresnel_list(scene, loaded.basis));
+  r.list("forms of the Fresnel reflectance", fresnel_list(scene, loaded.basis.packs()[0]));
   r.list("lights", light_list(loaded.features));
   std::vector<std::string> cameras;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {

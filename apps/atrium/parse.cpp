@@ -63,8 +63,8 @@ void add_scene(CLI::App& app, SceneOptions& o, Texts& t) {
       ->capture_default_str();
   app.add_flag("--no-pane-detection", t.no_pane_detection,
                "keep closed solids with two parallel faces as solids");
-  app.add_option("--spectrum", o.spectrum, "spectral lanes: auto, grey, rgb, 4 or 8")
-      ->check(CLI::IsMember({"auto", "grey", "rgb", "4", "8"}))
+  app.add_option("--spectrum", o.spectrum, "spectral lanes: auto, grey, rgb, 4, 8, 16 or 32")
+      ->check(CLI::IsMember({"auto", "grey", "rgb", "4", "8", "16", "32"}))
       ->capture_default_str();
 }
 

@@ -1,4 +1,4 @@
-#include "trace/render.h"
+#include "trace/packs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +102,7 @@ scene::SurfaceField load_solution(const RenderCommand& c, const LoadedScene& loa
 
 /// The field that the picture reads; empty if none is needed.
 scene::SurfaceField find_field(Session& session, const RenderCommand& c, const LoadedScene& loaded,
-                               Statistics& statistics) {
+                               double time_limit, Statistics& statistics) {
   std::string why;
   if (!uses_radiosity(c)) {
     why = "the method uses none";
@@ -119,8 +119,7 @@ scene::SurfaceField find_field(Session& session, const RenderCommand& c, const L
     statistics.radiosity_skipped = why;
     return {};
   }
-  RadiosityRun run =
-      run_radiosity(session, loaded, c.solve, time_share(session, c, 0.5), /*want_mesh=*/false);
+  RadiosityRun run = run_radiosity(session, loaded, c.solve, time_limit, /*want_mesh=*/false);
   statistics.solve = run.summary;
   statistics.counters += run.summary.counters;
   return std::move(run.field);
@@ -190,12 +189,49 @@ std::string file_for(const std::string& output, const ViewJob& job) {
       .string();
 }
 
+/// What one pack of wavelength bands needs; a scene of up to kMaxLanes lanes is one pack.
+struct Pack {
+  material::SpectralBasis basis;
+  scene::SurfaceField field;
+};
+
+std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedScene& loaded,
+                              Statistics& statistics) {
+  const material::SpectralBasis whole = loaded.basis;
+  std::vector<Pack> packs;
+  for (material::SpectralBasis& basis : whole.packs()) packs.push_back({std::move(basis), {}});
+  if (packs.size() > 1 && !(c.solution.empty() && c.save_solution.empty()))
+    throw Error("--spectrum: a solution file holds up to " + std::to_string(kMaxLanes) +
+                " lanes, not " + std::to_string(whole.lanes()));
+  for (std::size_t i = 0; i < packs.size(); ++i) {
+    const double limit = time_share(session, c, 0.5 / static_cast<double>(packs.size() - i));
+    loaded.basis = packs[i].basis;
+    packs[i].field = find_field(session, c, loaded, limit, statistics);
+  }
+  loaded.basis = whole;
+  return packs;
+}
+
+trace::RenderResult trace_packs(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+                                const std::vector<Pack>& packs, const ViewJob& job, double share) {
+  trace::RenderResult result;
+  for (std::size_t i = 0; i < packs.size(); ++i) {
+    const double limit = time_share(session, c, share / static_cast<double>(packs.size() - i));
+    const trace::RenderOptions options = render_options(session, c, job.camera, limit);
+    trace::RenderResult part = trace::render(*loaded.query, packs[i].basis, job.camera,
+                                             packs[i].field, options, session.control("render"));
+    if (i == 0)
+      result = std::move(part);
+    else
+      trace::add_pack(result, part);
+  }
+  return result;
+}
+
 void render_view(Session& session, const RenderCommand& c, const LoadedScene& loaded,
-                 const scene::SurfaceField& field, const ViewJob& job, double time_limit,
+                 const std::vector<Pack>& packs, const ViewJob& job, double share,
                  Statistics& statistics) {
-  const trace::RenderOptions options = render_options(session, c, job.camera, time_limit);
-  trace::RenderResult result = trace::render(*loaded.query, loaded.basis, job.camera, field,
-                                             options, session.control("render"));
+  trace::RenderResult result = trace_packs(session, c, loaded, packs, job, share);
   statistics.counters += result.counters;
   session.clock.enter("write");
   add_metadata(result.image, c, loaded, result);
@@ -248,16 +284,16 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
 
   // A solution must fit whatever camera comes later, so the mesh must not depend on this one.
   const bool own_mesh = c.solution.empty() && c.save_solution.empty();
-  const LoadedScene loaded = load_scene(
+  LoadedScene loaded = load_scene(
       session, c.scene, {.camera = c.camera, .follow_view = own_mesh, .show_warnings = true});
   if (session.interrupted()) return kInterrupted;
   const std::vector<ViewJob> jobs = view_jobs(session, c, loaded);
-  const scene::SurfaceField field = find_field(session, c, loaded, statistics);
-  save_solution(session, c, loaded, field);
+  const std::vector<Pack> packs = solve_packs(session, c, loaded, statistics);
+  save_solution(session, c, loaded, packs.front().field);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (i > 0 && session.interrupted()) break;
-    const double limit = time_share(session, c, 1.0 / static_cast<double>(jobs.size() - i));
-    render_view(session, c, loaded, field, jobs[i], limit, statistics);
+    render_view(session, c, loaded, packs, jobs[i], 1.0 / static_cast<double>(jobs.size() - i),
+                statistics);
   }
   warn_about_counts(session, statistics.counters);
   write_statistics(session, loaded, statistics);

@@ -36,6 +36,9 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   Session session(c.common, std::move(stop));
   const LoadedScene loaded = load_scene(session, c.scene, {});
   if (session.interrupted()) return kInterrupted;
+  if (loaded.basis.lanes() > kMaxLanes)
+    throw Error("--spectrum " + c.scene.spectrum + ": solve takes up to " +
+                std::to_string(kMaxLanes) + " lanes");
   std::string why;
   if (!radiosity_needed(loaded.features, why)) throw Error("solve: nothing to solve: " + why);
 

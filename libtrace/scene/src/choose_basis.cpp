@@ -97,9 +97,9 @@ BasisChoice choose_basis(const Scene& scene, const Features& features, const std
   const std::string asked = "asked for";
   if (request == "grey") return {SpectralBasis::grey(), asked};
   if (request == "rgb") return {SpectralBasis::rgb(), asked};
-  if (request == "4" || request == "8")
-    return {SpectralBasis::bands(request == "4" ? 4 : 8), asked};
-  throw Error("spectrum '" + request + "': known are auto, grey, rgb, 4, 8");
+  for (const int lanes : {4, 8, 16, 32})
+    if (request == std::to_string(lanes)) return {SpectralBasis::bands(lanes), asked};
+  throw Error("spectrum '" + request + "': known are auto, grey, rgb, 4, 8, 16, 32");
 }
 
 }  // namespace atrium::scene
