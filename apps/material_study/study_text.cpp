@@ -71,8 +71,8 @@ constexpr const char* kFindings = R"(What the tables below come to:
 - **Paper mode** agrees where the surface is smooth. A rough surface in it is a sharp mirror of
   other surfaces at any roughness, without the lamps and the sky: those appear as highlights only,
   and a highlight carries a share of the light that falls with c (4 F / c^2). The medium surface is
-  thus almost black but for the mirrored floor. This is what the equation says; brightness has to be
-  set by hand for each light, as its authors did.
+  thus almost black but for the mirrored floor. This is what the equation says; the brightness of
+  highlights has to be set by hand. Refraction is as sharp, at any roughness.
 - **Plastic** is nine tenths body in the paper's sum of weights, so its highlights have a tenth of
   their physical strength and all models look alike. The coupled form, with the body under the whole
   interface, is the one to trust: its highlights are ten times as bright.
