@@ -119,8 +119,10 @@ TEST(ChooseBasis, RequestsAreTakenAndUnknownOnesRefused) {
   EXPECT_EQ(choose_basis(scene, f, "rgb").basis.lanes(), 3);
   EXPECT_EQ(choose_basis(scene, f, "4").basis.lanes(), 4);
   EXPECT_EQ(choose_basis(scene, f, "8").basis.lanes(), 8);
+  EXPECT_EQ(choose_basis(scene, f, "16").basis.lanes(), 16);
+  EXPECT_EQ(choose_basis(scene, f, "32").basis.lanes(), 32);
   EXPECT_EQ(choose_basis(scene, f, "8").colours_compared, 0u);
-  for (const char* bad : {"", "3", "16", "32", "RGB"})
+  for (const char* bad : {"", "3", "64", "RGB"})
     EXPECT_THROW((void)choose_basis(scene, f, bad), Error) << bad;
 }
 
