@@ -9,6 +9,16 @@ namespace atrium::material {
 namespace {
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 constexpr float kSmoothest = 2.0e3f;  // c beyond which a lobe is narrower than a pixel ever sees
+constexpr float kHorizon = detail::kHorizon<float>;  // cosines up to here: no facet in between
+constexpr double kLargestFactor = 1e24;  // at grazing angles; times D it still is a float
+constexpr float kRarest = 1e-12f;        // probability of what u in steps of 2^-24 cannot choose
+constexpr float kNegligible = 1e-30f;    // albedo of what is black
+
+// The spread of refracted directions, about |eta - 1| / c, in units that directions of float
+// resolve: below, the facet that refracts one into the other is lost to rounding.
+bool unresolved(double eta, float c) {
+  return std::abs(eta - 1.0) < 1e-6 * static_cast<double>(std::max(c, 1.0f));
+}
 }  // namespace
 
 template <int N>
@@ -24,7 +34,8 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
     eta_[i] = inside ? 1.0f / m.n[i] : m.n[i];
     k_[i] = inside ? 0.0f : m.k[i];
   }
-  eta_mean_ = inside ? 1.0f / m.n_mean : m.n_mean;
+  eta_exact_ = inside ? 1.0 / static_cast<double>(m.n_mean) : static_cast<double>(m.n_mean);
+  eta_mean_ = static_cast<float>(eta_exact_);
 
   if (s.medium == Material::Medium::Pane) {
     pane_kd_ = m.pane_kd;
@@ -63,8 +74,10 @@ Bsdf<N>::Bsdf(const ResolvedMaterial<N>& m, bool front, const Spectrum<N>& body_
     facets_.emplace(
         std::min(facets_->c() / std::max(roughness_factor * roughness_factor, 1e-6f), kSmoothest));
   smith_ = m.smith.get();
-  interreflection_ = m.interreflection.get();
+  if (m.interreflection && m.interreflection->mean_loss() > 1e-7f)
+    interreflection_ = m.interreflection.get();
   interreflected_ = m.interreflected;
+  if (facets_ && k_tp_rg_ > 0.0f && unresolved(eta_exact_, facets_->c())) facets_.reset();
   coherent_ = facets_ && s.sigma.has_value();
   coherent_g_ =
       inside ? m.coherent_g * m.n * m.n : m.coherent_g;  // phases are those of the viewer's medium
@@ -197,14 +210,14 @@ float Bsdf<N>::masking(const Vec3f& wo, const Vec3f& wi, float nh, float lh, flo
 template <int N>
 Spectrum<N> Bsdf<N>::interreflection(float mu_o, float mu_i) const {
   const float mean = interreflection_->mean_loss();
-  if (!(mean > 1e-7f)) return {};
   return interreflected_ *
          (interreflection_->loss(mu_o) * interreflection_->loss(mu_i) * kInvPi / mean);
 }
 
 template <int N>
 float Bsdf<N>::interreflection_probability(float mu) const {
-  return interreflection_ != nullptr ? interreflection_->loss(mu) : 0.0f;
+  // The share of the light, as far as single reflections keep one half of the samples.
+  return interreflection_ != nullptr ? std::min(interreflection_->loss(mu), 0.5f) : 0.0f;
 }
 
 template <int N>
@@ -214,25 +227,41 @@ Spectrum<N> Bsdf<N>::lobe_reflection(const Vec3f& wo, const Vec3f& wi) const {
   const Vec3f q = wo + wi;
   const float length = q.norm();
   const float bh = std::min(0.5f * length, 1.0f);
+  if (!(wo.z() > kHorizon && wi.z() > kHorizon)) return {};
   const float g = masking(wo, wi, q.z() / length, bh, bh);
   Spectrum<N> f = fresnel(bh) * (facets_->density(q) * g / (4.0f * wi.z() * wo.z()));
   if (interreflection_ != nullptr) f += interreflection(wo.z(), wi.z()) * reflectance_factor_;
   return f * k_rg_ * incoherent_share(wo.z(), wi.z());
 }
 
+// In double: b + eta l cancels, all the more the closer eta is to 1, and c^2 delta^2 of a smooth
+// surface multiplies what the angle loses.
+template <int N>
+std::optional<typename Bsdf<N>::RefractingFacet> Bsdf<N>::refraction(const Vec3f& wo,
+                                                                     const Vec3f& wi) const {
+  const Vec3d b = wo.cast<double>(), l = wi.cast<double>();
+  const auto h = refracting_facet<double>(l, b, eta_exact_);
+  if (!h) return std::nullopt;
+  const double bh = b.dot(*h), lh = l.dot(*h), d = eta_exact_ * lh + bh;
+  const double jacobian = eta_exact_ * eta_exact_ * -lh / (d * d);
+  const double factor = refraction_factor(l.z(), b.z(), lh, bh, eta_exact_);
+  return RefractingFacet{h->cast<float>(), static_cast<float>(lh), static_cast<float>(bh),
+                         static_cast<float>(std::min(factor, kLargestFactor)),
+                         static_cast<float>(jacobian)};
+}
+
 template <int N>
 Spectrum<N> Bsdf<N>::lobe_transmission(const Vec3f& wo, const Vec3f& wi,
                                        Transport transport) const {
-  const auto h = refracting_facet<float>(wi, wo, eta_mean_);
-  if (!h) return {};
-  const float bh = wo.dot(*h);
-  const float lh = wi.dot(*h);
-  const float g = masking(wo, wi, h->z(), -lh, bh);
-  float scale =
-      refraction_factor(wi.z(), wo.z(), lh, bh, eta_mean_) * facets_->density(*h) * g * k_tp_rg_;
+  if (!(wo.z() > kHorizon && wi.z() < -kHorizon)) return {};
+  const auto facet = refraction(wo, wi);
+  if (!facet) return {};
+  const float g = masking(wo, wi, facet->h.z(), -facet->lh, facet->bh);
+  float scale = facet->factor * facets_->density(facet->h) * g * k_tp_rg_;
   if (!(scale > 0.0f)) return {};
   if (transport == Transport::Flux) scale *= eta_mean_ * eta_mean_;
-  return (Spectrum<N>::one() - fresnel(bh)) * tint_ * incoherent_share(wo.z(), wi.z()) * scale;
+  return (Spectrum<N>::one() - fresnel(facet->bh)) * tint_ * incoherent_share(wo.z(), wi.z()) *
+         scale;
 }
 
 template <int N>
@@ -281,17 +310,22 @@ typename Bsdf<N>::Choice Bsdf<N>::choose(const Vec3f& wo, std::uint32_t events) 
     if ((events & kRefraction) != 0) c.refraction = refraction_weight(mu, Transport::Flux).mean();
   }
   if ((events & (kPaneReflection | kPaneStraight)) != 0) {
-    const PaneTerms p = pane(mu, eta_mean_, pane_kd_.mean());
-    if ((events & kPaneReflection) != 0) c.pane_reflection = p.reflectance;
-    if ((events & kPaneStraight) != 0) c.pane_straight = p.transmittance * tint_.mean();
+    Spectrum<N> reflected, straight;  // lane by lane: one may let through what the mean does not
+    for (int i = 0; i < N; ++i) {
+      const PaneTerms p = pane(mu, eta_[i], pane_kd_[i]);
+      reflected[i] = p.reflectance;
+      straight[i] = p.transmittance * tint_[i];
+    }
+    if ((events & kPaneReflection) != 0) c.pane_reflection = reflected.mean();
+    if ((events & kPaneStraight) != 0) c.pane_straight = straight.mean();
   }
   const float sum = c.diffuse_reflection + c.diffuse_transmission + c.lobe + c.mirror +
                     c.refraction + c.pane_reflection + c.pane_straight;
-  if (!(sum > 0.0f)) return {};
+  if (!(sum > kNegligible)) return {};
   const float scale = 1.0f / sum;
   for (float* p : {&c.diffuse_reflection, &c.diffuse_transmission, &c.lobe, &c.mirror,
                    &c.refraction, &c.pane_reflection, &c.pane_straight})
-    *p *= scale;
+    *p = *p * scale > kRarest ? *p * scale : 0.0f;
   return c;
 }
 
@@ -312,20 +346,17 @@ float Bsdf<N>::lobe_pdf(const Vec3f& wo, const Vec3f& wi, std::uint32_t events) 
     if (!has(events & kLobeReflection)) return 0.0f;
     if (lobe_ != nullptr)
       return std::visit([&](const auto& l) { return l.pdf(wo, wi); }, comparison());
+    if (!(wo.z() > kHorizon && wi.z() > kHorizon)) return 0.0f;
     const Vec3f q = wo + wi;
     const float bh = 0.5f * q.norm();
     const float facet = facets_->pdf(q) / (4.0f * bh) * reflect_probability(bh, events);
     const float several = interreflection_probability(wo.z());
-    return facet + several * (wi.z() * kInvPi - facet);
+    return several > 0.0f ? facet + several * (interreflection_->pdf(wi.z()) - facet) : facet;
   }
   if (!has(events & kLobeTransmission)) return 0.0f;
-  const auto h = refracting_facet<float>(wi, wo, eta_mean_);
-  if (!h) return 0.0f;
-  const float bh = wo.dot(*h);
-  const float lh = wi.dot(*h);
-  const float d = eta_mean_ * lh + bh;
-  return facets_->pdf(*h) * eta_mean_ * eta_mean_ * -lh / (d * d) *
-         (1.0f - reflect_probability(bh, events));
+  const auto facet = refraction(wo, wi);
+  if (!facet) return 0.0f;
+  return facets_->pdf(facet->h) * facet->jacobian * (1.0f - reflect_probability(facet->bh, events));
 }
 
 template <int N>
@@ -348,8 +379,8 @@ std::optional<Vec3f> Bsdf<N>::sample_lobe(const Vec3f& wo, float u_choice, const
   if (lobe_ != nullptr)
     return std::visit([&](const auto& l) { return l.sample(wo, u); }, comparison());
   const float several = interreflection_probability(wo.z());
-  if (u_choice < several) return sample_cosine_hemisphere(u);
-  u_choice = (u_choice - several) / (1.0f - several);
+  if (u_choice < several) return interreflection_->sample(u);
+  if (several > 0.0f) u_choice = (u_choice - several) / (1.0f - several);
   const Vec3f h = facets_->sample(u);
   const float bh = wo.dot(h);
   if (!(bh > 0.0f)) return std::nullopt;
@@ -409,11 +440,13 @@ std::optional<BsdfSample<N>> Bsdf<N>::sample(const Vec3f& wo, float u_choice, co
       s.event = kDiffuseTransmission;
     }
   } else {
-    const auto wi = sample_lobe(wo, (u_choice - diffuse) / c.lobe, u, events);
+    constexpr float last = 1.0f - 0x1p-24f;
+    const auto wi = sample_lobe(wo, std::min((u_choice - diffuse) / c.lobe, last), u, events);
     if (!wi) return std::nullopt;
     s.wi = *wi;
     s.event = wi->z() > 0.0f ? kLobeReflection : kLobeTransmission;
   }
+  if (s.wi.z() == 0.0f) return std::nullopt;  // in the horizon: no share in anything
   s.pdf = pdf(c, wo, s.wi, events);
   if (!(s.pdf > 0.0f)) return std::nullopt;
   const BsdfValue<N> f = eval(wo, s.wi, transport);

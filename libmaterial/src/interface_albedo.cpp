@@ -24,16 +24,16 @@ double smooth_ends(double a, double b, F&& f) {
 
 // Angles of incidence on a facet (their cosines bh) where the integrand of a facet with cosine nh
 // bends: where light begins to leave on the right side, where G changes its branch, where total
-// reflection begins. Extra ones do no harm; what does not exist is NaN.
+// reflection begins. Extra ones do no harm; what does not exist is no cosine.
 using Bends = std::array<double, 8>;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = 2.0;
 
 Bends reflection_bends(double mu, double nh, double n) {
-  return {mu / (2.0 * nh),                        // n.l = 0
-          2.0 * nh * mu,                          // 2 (n.h)(n.b) = b.h
-          2.0 * nh * mu / (4.0 * nh * nh - 1.0),  // 2 (n.h)(n.l) = l.h
-          mu / nh,                                // n.l = n.b
+  return {mu / (2.0 * nh),                                            // n.l = 0
+          2.0 * nh * mu,                                              // 2 (n.h)(n.b) = b.h
+          nh != 0.5 ? 2.0 * nh * mu / (4.0 * nh * nh - 1.0) : kNone,  // 2 (n.h)(n.l) = l.h
+          mu / nh,                                                    // n.l = n.b
           n < 1.0 ? std::sqrt((1.0 - n) * (1.0 + n)) : kNone,
           kNone,
           kNone,

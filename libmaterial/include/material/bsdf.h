@@ -78,12 +78,20 @@ class Interreflection {
   [[nodiscard]] float loss(float mu) const;
   /// 2 * integral of loss mu dmu, of the table as it is interpolated.
   [[nodiscard]] float mean_loss() const { return mean_; }
+  /// Directions on the upper hemisphere, nearly in proportion to loss(mu) mu; their density [1/sr]
+  /// at a cosine mu. loss mu / (pi mean_loss) is at most about twice that.
+  [[nodiscard]] Vec3f sample(const Vec2f& u) const;
+  [[nodiscard]] float pdf(float mu) const;
 
  private:
+  void tabulate_density();
+
   static constexpr int kSteps = 64;
   float width_, scale_;  // of w = mu / (mu + width): fine towards grazing
   float mean_ = 0.0f;
   std::array<float, kSteps + 1> loss_{};
+  std::array<float, kSteps + 1> cumulative_{}, cosine2_{};  // of sample(), at the steps' ends
+  std::array<float, kSteps> average_{};                     // loss within a step over the mean
 };
 
 /// A material with its spectra turned into lanes; one per material of a scene.
@@ -174,6 +182,14 @@ class Bsdf {
   [[nodiscard]] Spectrum<N> mirror_weight(float mu) const;
   [[nodiscard]] Spectrum<N> refraction_weight(float mu, Transport transport) const;
   [[nodiscard]] Spectrum<N> lobe_reflection(const Vec3f& wo, const Vec3f& wi) const;
+  /// The facet that refracts one direction into the other.
+  struct RefractingFacet {
+    Vec3f h;
+    float lh, bh;
+    float factor;    ///< refraction_factor()
+    float jacobian;  ///< solid angle of facets per solid angle of wi
+  };
+  [[nodiscard]] std::optional<RefractingFacet> refraction(const Vec3f& wo, const Vec3f& wi) const;
   [[nodiscard]] Spectrum<N> lobe_transmission(const Vec3f& wo, const Vec3f& wi,
                                               Transport transport) const;
   [[nodiscard]] float masking(const Vec3f& wo, const Vec3f& wi, float nh, float lh, float bh) const;
@@ -198,6 +214,7 @@ class Bsdf {
   Spectrum<N> diffuse_reflection_, diffuse_transmission_;
   Spectrum<N> eta_, k_;  ///< n2/n1 and k2/n1 per lane, seen from the viewer's side
   float eta_mean_ = 1.0f;
+  double eta_exact_ = 1.0;  ///< eta_mean_ before rounding
   float k_rg_ = 0.0f, k_tp_rg_ = 0.0f;
   Spectrum<N> tint_;                ///< on directed transmission
   Spectrum<N> reflectance_factor_;  ///< on the interface's reflectance
