@@ -167,22 +167,22 @@ Spectrum<N> Bsdf<N>::incoherent_share(float mu_o, float mu_i) const {
   if (!coherent_) return Spectrum<N>::one();
   const bool through = k_tp_rg_ > 0.0f;
   const float mu_r = mu_i > 0.0f ? std::min(mu_o, mu_i) : mu_o;
-  Spectrum<N> bound = coherent_reflection(mu_r);
-  const auto raise = [&](const Spectrum<N>& other) {
-    for (int i = 0; i < N; ++i) bound[i] = std::max(bound[i], other[i]);
+  // The smallest phase counts; 1 - exp(-x) of it by expm1, which keeps the digits of a small one.
+  float phase2 = mu_r * mu_r;
+  const auto straight = [&](float mu) {
+    const float d = mu - eta_mean_ * cos_refracted(mu);
+    phase2 = std::min(phase2, 0.25f * d * d);
   };
-  if (through) raise(coherent_transmission(mu_o));
-  if (through && mu_i > 0.0f) raise(coherent_transmission(mu_i));
+  if (through) straight(mu_o);
+  if (through && mu_i > 0.0f) straight(mu_i);
   if (mu_i < 0.0f) {  // the far side's own factors, in its medium
     const float cos2 = 1.0f - eta_mean_ * eta_mean_ * (1.0f - mu_i * mu_i);
     const float d = std::sqrt(std::max(0.0f, cos2)) + eta_mean_ * mu_i;
     const float r = eta_mean_ * mu_i;
-    raise(Spectrum<N>::generate([&](int i) {
-      return std::max(std::exp(-coherent_g_[i] * r * r),
-                      cos2 > 0.0f ? std::exp(-0.25f * coherent_g_[i] * d * d) : 0.0f);
-    }));
+    phase2 = std::min(phase2, r * r);
+    if (cos2 > 0.0f) phase2 = std::min(phase2, 0.25f * d * d);
   }
-  return Spectrum<N>::one() - bound;
+  return Spectrum<N>::generate([&](int i) { return -std::expm1(-coherent_g_[i] * phase2); });
 }
 
 template <int N>
@@ -271,10 +271,7 @@ BsdfValue<N> Bsdf<N>::eval(const Vec3f& wo, const Vec3f& wi, Transport transport
   if (wi.z() > 0.0f) {
     if (has(kDiffuseReflection)) {
       v.diffuse = diffuse_reflection_ * kInvPi;
-      if (coupled_ != nullptr)
-        for (int i = 0; i < N; ++i)
-          v.diffuse[i] *= coupled_->at(wo.z())[i] * coupled_->at(wi.z())[i] /
-                          std::max(coupled_->mean[i], 1e-6f);
+      if (coupled_ != nullptr) v.diffuse *= coupled_->at(wo.z()) * body_weight(wi.z());
     }
     if (has(kLobeReflection)) v.lobe = lobe_reflection(wo, wi);
   } else {

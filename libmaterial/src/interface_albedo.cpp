@@ -1,184 +1,16 @@
 #include "material/interface_albedo.h"
 
-#include <array>
-#include <limits>
-#include <tuple>
-#include <vector>
-
-#include "gauss_legendre.h"
+#include "facet_integral.h"
 
 namespace atrium::material {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kHalfPi = 0.5 * kPi;
+using namespace facet_integral;
 
-// Integral over [a, b] with both ends smoothed: square roots at an end cost no digits.
-template <class F>
-double smooth_ends(double a, double b, F&& f) {
-  const double width = b - a;
-  return gauss_legendre_32(0.0, 1.0, [&](double t) {
-    return 6.0 * t * (1.0 - t) * width * f(a + width * t * t * (3.0 - 2.0 * t));
-  });
-}
-
-// Angles of incidence on a facet (their cosines bh) where the integrand of a facet with cosine nh
-// bends: where light begins to leave on the right side, where G changes its branch, where total
-// reflection begins. Extra ones do no harm; what does not exist is no cosine.
-using Bends = std::array<double, 8>;
-
-constexpr double kNone = 2.0;
-
-Bends reflection_bends(double mu, double nh, double n) {
-  return {mu / (2.0 * nh),                                            // n.l = 0
-          2.0 * nh * mu,                                              // 2 (n.h)(n.b) = b.h
-          nh != 0.5 ? 2.0 * nh * mu / (4.0 * nh * nh - 1.0) : kNone,  // 2 (n.h)(n.l) = l.h
-          mu / nh,                                                    // n.l = n.b
-          n < 1.0 ? std::sqrt((1.0 - n) * (1.0 + n)) : kNone,
-          kNone,
-          kNone,
-          kNone};
-}
-
-// Roots of p (n^2 - 1 + x^2) = q (x nh - mu)^2: both conditions on the refracted cosine have this
-// form, n cos_t = sqrt(n^2 - 1 + x^2).
-std::array<double, 2> refraction_roots(double p, double q, double mu, double nh, double n) {
-  const double a = p - q * nh * nh, b = q * nh * mu, c = p * (n - 1.0) * (n + 1.0) - q * mu * mu;
-  const double d = b * b - a * c;
-  if (!(d >= 0.0) || a == 0.0) return {kNone, kNone};
-  const double root = std::sqrt(d);
-  return {(-b - root) / a, (-b + root) / a};
-}
-
-Bends refraction_bends(double mu, double nh, double n) {
-  const double w = 2.0 * nh * nh - 1.0;
-  const auto level = refraction_roots(nh * nh, 1.0, mu, nh, n);           // n.l = 0
-  const auto branch = refraction_roots(w * w, 4.0 * nh * nh, mu, nh, n);  // 2 (n.h)|n.l| = |l.h|
-  return {level[0],
-          level[1],
-          branch[0],
-          branch[1],
-          2.0 * nh * mu,
-          mu / nh,
-          n < 1.0 ? std::sqrt((1.0 - n) * (1.0 + n)) : kNone,
-          kNone};
-}
-
-class Facets {
- public:
-  Facets(double mu, double c, Masking masking)
-      : mu_(mu), sine_(std::sqrt((1.0 - mu) * (1.0 + mu))), c_(c), masking_(masking), facets_(c) {
-    if (masking == Masking::Smith) smith_.emplace(c);
-  }
-
-  // F G b.h of a facet that reflects.
-  double reflect(double nh, double bh, double fresnel) const {
-    const double nl = 2.0 * bh * nh - mu_;
-    if (!(bh > 0.0) || !(nl > 0.0)) return 0.0;
-    return fresnel * attenuation(nl, nh, bh, bh, false) * bh;
-  }
-
-  double refract(double nh, double bh, double n, double fresnel) const {
-    const double sine2 = (1.0 - bh) * (1.0 + bh) / (n * n);
-    if (!(bh > 0.0) || !(sine2 < 1.0)) return 0.0;
-    const double cos_t = std::sqrt(1.0 - sine2);
-    const double nl = -mu_ / n + (bh / n - cos_t) * nh;
-    return nl < 0.0 ? (1.0 - fresnel) * attenuation(nl, nh, cos_t, bh, true) * bh : 0.0;
-  }
-
-  // 1/mu * integral of D share(nh, bh) dw_h; bends(nh) says where the share is not smooth.
-  template <class Share, class BendsOf>
-  double integrate(const Share& share, const BendsOf& bends) const {
-    const std::vector<double> ends = panel_ends(bends);
-    double sum = 0.0;
-    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      sum += smooth_ends(ends[i], ends[i + 1], [&](double delta) {
-        return facets_.density(delta) * std::sin(delta) * around(delta, share, bends);
-      });
-    return 2.0 * sum / mu_;
-  }
-
- private:
-  double attenuation(double nl, double nh, double lh, double bh, bool transmitted) const {
-    if (!smith_) return masking_term(masking_, c_, nl, mu_, nh, lh, bh, transmitted);
-    const auto l = static_cast<float>(nl), b = static_cast<float>(mu_);
-    return static_cast<double>(transmitted ? smith_->transmission(b, l) : smith_->reflection(b, l));
-  }
-
-  // Facet angles at which a bend enters or leaves the circle of azimuths.
-  template <class BendsOf>
-  std::vector<double> panel_ends(const BendsOf& bends) const {
-    const double end = std::min(kHalfPi, 6.8 / std::max(c_, 1e-9));
-    std::vector<double> ends = {0.0, 0.25 * end, 0.5 * end, 0.75 * end, end};
-    const double theta = std::atan2(sine_, mu_);
-    constexpr int kScan = 128;
-    for (const double side : {-1.0, 1.0}) {
-      const auto misses = [&](std::size_t k, double delta) {
-        return bends(std::cos(delta))[k] - std::cos(theta + side * delta);
-      };
-      for (std::size_t k = 0; k < std::tuple_size_v<Bends>; ++k) {
-        double lo = 0.0, at_lo = misses(k, 0.0);
-        for (int i = 1; i <= kScan; ++i) {
-          double hi = end * i / kScan;
-          const double at_hi = misses(k, hi);
-          if (at_lo * at_hi < 0.0) ends.push_back(bisect(k, lo, hi, at_lo, misses));
-          lo = hi;
-          at_lo = at_hi;
-        }
-      }
-    }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(
-        std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < 1e-12; }),
-        ends.end());
-    return ends;
-  }
-
-  template <class F>
-  static double bisect(std::size_t k, double lo, double hi, double at_lo, const F& f) {
-    for (int i = 0; i < 48; ++i) {
-      const double middle = 0.5 * (lo + hi);
-      (f(k, middle) * at_lo > 0.0 ? lo : hi) = middle;
-    }
-    return 0.5 * (lo + hi);
-  }
-
-  // Integral of the share over the azimuth, half a turn.
-  template <class Share, class BendsOf>
-  double around(double delta, const Share& share, const BendsOf& bends) const {
-    const double nh = std::cos(delta), a = mu_ * nh, b = sine_ * std::sin(delta);
-    std::array<double, std::tuple_size_v<Bends> + 3> ends;
-    ends.fill(kPi);
-    ends[0] = 0.0;
-    std::size_t count = 1;
-    const auto cut = [&](double bh) {
-      const double x = (bh - a) / b;
-      if (x > -1.0 && x < 1.0) ends[count++] = std::acos(x);
-    };
-    if (b > 0.0) {
-      cut(0.0);
-      for (const double bh : bends(nh)) cut(bh);
-    }
-    std::sort(ends.begin(), ends.end());
-    double sum = 0.0;
-    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      if (ends[i + 1] - ends[i] > 1e-13)
-        sum += smooth_ends(ends[i], ends[i + 1], [&](double phi) {
-          return share(nh, std::min(a + b * std::cos(phi), 1.0));
-        });
-    return sum;
-  }
-
-  double mu_, sine_, c_;
-  Masking masking_;
-  GaussianFacets<double> facets_;
-  std::optional<SmithTable> smith_;
-};
-
-double reflected_share(const Facets& facets, double mu, double n, double k) {
+double reflected_share(const Facets<32>& facets, double mu, double n, double k) {
   return facets.integrate(
       [&](double nh, double bh) {
-        return facets.reflect(nh, bh, bh > 0.0 ? fresnel(bh, n, k).mean() : 0.0);
+        return bh > 0.0 ? fresnel(bh, n, k).mean() * facets.reflect(nh, bh) : 0.0;
       },
       [&](double nh) { return reflection_bends(mu, nh, k == 0.0 ? n : 1.0); });
 }
@@ -186,20 +18,21 @@ double reflected_share(const Facets& facets, double mu, double n, double k) {
 }  // namespace
 
 double specular_albedo(double mu, double c, double n, double k, Masking masking) {
-  return reflected_share(Facets(mu, c, masking), mu, n, k);
+  return reflected_share(Facets<32>(mu, c, masking), mu, n, k);
 }
 
 double white_albedo(double mu, double c, Masking masking) {
-  const Facets facets(mu, c, masking);
-  return facets.integrate([&](double nh, double bh) { return facets.reflect(nh, bh, 1.0); },
+  const Facets<32> facets(mu, c, masking);
+  return facets.integrate([&](double nh, double bh) { return facets.reflect(nh, bh); },
                           [&](double nh) { return reflection_bends(mu, nh, 1.0); });
 }
 
 InterfaceAlbedo dielectric_albedo(double mu, double c, double n, Masking masking) {
-  const Facets facets(mu, c, masking);
+  const Facets<32> facets(mu, c, masking);
   const double transmitted = facets.integrate(
       [&](double nh, double bh) {
-        return facets.refract(nh, bh, n, bh > 0.0 ? fresnel_dielectric(bh, n).mean() : 0.0);
+        return bh > 0.0 ? (1.0 - fresnel_dielectric(bh, n).mean()) * facets.refract(nh, bh, n)
+                        : 0.0;
       },
       [&](double nh) { return refraction_bends(mu, nh, n); });
   return {reflected_share(facets, mu, n, 0.0), transmitted};

@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "coupled_body.h"
 #include "material/bsdf.h"
 #include "material/fresnel.h"
 #include "material/interface_albedo.h"
@@ -85,51 +86,6 @@ void add_interreflection(ResolvedMaterial<N>& r, const Material& m) {
     r.interreflected[i] = static_cast<float>(interreflected_fresnel(f, mean_albedo));
   }
   r.interreflection = std::move(table);
-}
-
-// Directional albedo of the interface, mirror part included, by a fixed low-discrepancy rule.
-template <int N>
-Spectrum<N> interface_albedo(const Bsdf<N>& interface, float mu) {
-  const Vec3f wo(std::sqrt(std::max(0.0f, 1.0f - mu * mu)), 0.0f, mu);
-  constexpr int kSamples = 256;
-  Spectrum<N> sum;
-  for (int i = 0; i < kSamples; ++i) {
-    // R2 sequence (Roberts 2018): an even cover of the unit square.
-    const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
-    const Vec2f u(fraction(0.5 + 0.7548776662466927 * (i + 1)),
-                  fraction(0.5 + 0.5698402909980532 * (i + 1)));
-    const float choice = (static_cast<float>(i) + 0.5f) / kSamples;
-    if (const auto s = interface.sample(wo, choice, u, kSpecularEvents, Transport::Flux))
-      sum += s->weight;
-  }
-  return sum / static_cast<float>(kSamples);
-}
-
-template <int N>
-std::shared_ptr<const CoupledBody<N>> tabulate_body(const ResolvedMaterial<N>& r) {
-  ResolvedMaterial<N> interface = r;
-  interface.body_reflectance = interface.body_transmittance = Spectrum<N>::zero();
-  interface.coupled.reset();
-  const Bsdf<N> bsdf(interface, true, Spectrum<N>::one(), Spectrum<N>::one(), 1.0f);
-  auto body = std::make_shared<CoupledBody<N>>();
-  constexpr int steps = CoupledBody<N>::kSteps;
-  const bool smooth = !r.facets;
-  for (int i = 0; i <= steps; ++i) {
-    const float mu = std::max(static_cast<float>(i) / steps, 1e-3f);
-    const Spectrum<N> albedo =
-        smooth ? bsdf.albedo({std::sqrt(1.0f - mu * mu), 0.0f, mu}, kSpecularEvents)
-               : interface_albedo(bsdf, mu);
-    for (int k = 0; k < N; ++k)
-      body->transmitted[static_cast<std::size_t>(i)][k] = std::max(0.0f, 1.0f - albedo[k]);
-  }
-  // B-bar = 2 * integral of B mu dmu, exactly for the piecewise linear table.
-  for (int i = 0; i < steps; ++i) {
-    const float a = static_cast<float>(i) / steps, h = 1.0f / steps;
-    const Spectrum<N>&b0 = body->transmitted[static_cast<std::size_t>(i)],
-          &b1 = body->transmitted[static_cast<std::size_t>(i) + 1];
-    body->mean += 2.0f * h * ((0.5f * a + h / 6.0f) * b0 + (0.5f * a + h / 3.0f) * b1);
-  }
-  return body;
 }
 
 }  // namespace

@@ -54,11 +54,11 @@ double brdf_convex(const Vec3d& l, const Vec3d& b, const GaussianFacets<double>&
                    double k_df, double k_rg, double rho_d, std::optional<double> sigma_over_lambda,
                    Masking masking) {
   if (!(l.z() > 0.0) || !(b.z() > 0.0)) return 0.0;
-  const double gamma = sigma_over_lambda
-                           ? coherent_reflection(std::min(l.z(), b.z()), *sigma_over_lambda, 1.0)
-                           : 0.0;
+  const double rough = sigma_over_lambda
+                           ? incoherent_reflection(std::min(l.z(), b.z()), *sigma_over_lambda, 1.0)
+                           : 1.0;
   return k_df * rho_d * std::numbers::inv_pi +
-         k_rg * (1.0 - gamma) * brdf_specular(l, b, facets, n, 0.0, masking);
+         k_rg * rough * brdf_specular(l, b, facets, n, 0.0, masking);
 }
 
 }  // namespace atrium::material

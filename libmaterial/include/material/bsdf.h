@@ -54,20 +54,33 @@ struct BsdfSample {
 };
 
 /// The share of light that the interface of a coupled material lets through, B(mu), tabulated
-/// (MATERIAL_MODEL 5.5), with its cosine mean.
+/// (MATERIAL_MODEL 5.5), with its cosine mean. The table is even in asinh(mu / width), fine where
+/// the interface's albedo bends, and cubic between its places.
 template <int N>
 struct CoupledBody {
-  static constexpr int kSteps = 64;
-  std::array<Spectrum<N>, kSteps + 1> transmitted;  ///< B at mu = i / kSteps
+  static constexpr int kSteps = 96;
+  std::array<Spectrum<N>, kSteps + 1> transmitted;  ///< B at mu = node(i)
   Spectrum<N> mean;                                 ///< B-bar = 2 * integral of B mu dmu
 
+  /// \param width  of mu at which B begins to change, in [1e-4, 1].
+  explicit CoupledBody(double width);
+  [[nodiscard]] double node(int i) const;
   [[nodiscard]] Spectrum<N> at(float mu) const {
-    const float x = std::min(std::max(mu, 0.0f), 1.0f) * kSteps;
-    const int i = std::min(static_cast<int>(x), kSteps - 1);
-    const float f = x - static_cast<float>(i);
-    return transmitted[static_cast<std::size_t>(i)] * (1.0f - f) +
-           transmitted[static_cast<std::size_t>(i) + 1] * f;
+    mu = std::min(std::max(mu, 0.0f), 1.0f);
+    const float x = std::asinh(mu * inverse_width_) * scale_;
+    const int first = std::clamp(static_cast<int>(x) - 1, 0, kSteps - 3);
+    const float t = x - static_cast<float>(first);  // of four places, 0 to 3 (Lagrange)
+    const auto i = static_cast<std::size_t>(first);
+    Spectrum<N> b = transmitted[i] * (-(t - 1.0f) * (t - 2.0f) * (t - 3.0f) / 6.0f);
+    b += transmitted[i + 1] * (0.5f * t * (t - 2.0f) * (t - 3.0f));
+    b += transmitted[i + 2] * (-0.5f * t * (t - 1.0f) * (t - 3.0f));
+    b += transmitted[i + 3] * (t * (t - 1.0f) * (t - 2.0f) / 6.0f);
+    for (float& v : b.lane) v = std::clamp(v, 0.0f, 1.0f);
+    return b;
   }
+
+ private:
+  float inverse_width_, scale_;
 };
 
 /// What facets lose to one scattering, 1 - E(mu) for F = 1, and what of it comes back.

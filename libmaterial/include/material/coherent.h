@@ -14,6 +14,13 @@ namespace atrium::material {
   return std::exp(-x * x);
 }
 
+/// What is left of it, 1 - coherent_reflection(), to all digits.
+[[nodiscard]] inline double incoherent_reflection(double cosine, double sigma, double lambda,
+                                                  double n1 = 1.0) {
+  const double x = 4.0 * std::numbers::pi * n1 * sigma * cosine / lambda;
+  return -std::expm1(-x * x);
+}
+
 /// Share that passes straight (refracted) from n1 to n2, exp(-(2 pi sigma (n1 cos_i - n2 cos_t) /
 /// lambda)^2); 0 under total reflection.
 [[nodiscard]] inline double coherent_transmission(double cosine, double sigma, double lambda,
