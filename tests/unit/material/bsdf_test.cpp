@@ -310,11 +310,10 @@ TEST(Bsdf, CoupledPlasticHasTheAlbedoOfItsParts) {
   for (const double theta : {0.0, 45.0, 75.0}) {
     const Vec3f wo = direction(theta, 0.0);
     const double f = fresnel_dielectric(static_cast<double>(wo.z()), 1.5).mean();
-    // The table of B is linear between 65 places.
     EXPECT_NEAR(sampled_albedo(b.bsdf, wo, kMirror, 1000).mean, f, 1e-5);
     const Estimate body = sampled_albedo(b.bsdf, wo, kDiffuseReflection);
-    EXPECT_NEAR(body.mean, 0.8 * (1.0 - f), 4.0 * body.error + 3e-3);
-    EXPECT_NEAR(static_cast<double>(b.bsdf.diffuse_reflectance(wo)[0]), 0.8 * (1.0 - f), 3e-3);
+    EXPECT_NEAR(body.mean, 0.8 * (1.0 - f), 4.0 * body.error + 2e-5);
+    EXPECT_NEAR(static_cast<double>(b.bsdf.diffuse_reflectance(wo)[0]), 0.8 * (1.0 - f), 2e-5);
   }
 }
 
