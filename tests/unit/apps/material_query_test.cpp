@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "material/error.h"
+#include "material/microfacet.h"
 
 namespace {
 
@@ -471,9 +472,20 @@ TEST(MaterialQuery, EmptyArrayAndUnreadableText) {
 }
 
 // Digits that read back as the same number, and no others than it takes.
+// What is printed reads back as the very number that the library computed, in no more digits than
+// that takes.
 TEST(MaterialQuery, NumbersRoundTrip) {
-  EXPECT_EQ(answer_queries(std::string("[").append(query("norm", R"("c": 0)")).append("]")),
-            "[\n{\"kind\": \"norm\", \"values\": {\"N\": 0.31830988618379075}}\n]\n");
+  for (const double c : {0.0, 0.1, 1.0 / 3.0, 7.0, 123456.789}) {
+    std::string in(32, '\0');
+    in.resize(static_cast<std::size_t>(std::snprintf(in.data(), in.size(), "%.17g", c)));
+    const std::string answer = answer_queries("[" + query("norm", "\"c\": " + in) + "]");
+    const std::size_t at = answer.find("\"N\": ");
+    ASSERT_NE(at, std::string::npos) << answer;
+    const char* text = answer.c_str() + at + 5;
+    char* end = nullptr;
+    EXPECT_EQ(std::strtod(text, &end), atrium::material::gaussian_facets_norm(c)) << answer;
+    EXPECT_LE(end - text, 24) << answer;
+  }
 }
 
 TEST(MaterialQuery, TimeIsLinear) {
