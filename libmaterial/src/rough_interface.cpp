@@ -1,7 +1,12 @@
 #include "material/rough_interface.h"
 
+#include "material/models/common.h"
+
 namespace atrium::material {
 namespace {
+
+// As the models of the literature have it: 1 / cos^2 times any lobe's peak stays finite.
+bool above(double cosine) { return cosine > detail::kHorizon<double>; }
 
 double angle_of_cosine(double mu) { return std::acos(std::clamp(std::abs(mu), 0.0, 1.0)); }
 
@@ -27,7 +32,7 @@ double masking_term(Masking masking, double c, double nl, double nb, double nh, 
 
 double brdf_specular(const Vec3d& l, const Vec3d& b, const GaussianFacets<double>& facets, double n,
                      double k, Masking masking) {
-  if (!(l.z() > 0.0) || !(b.z() > 0.0)) return 0.0;
+  if (!above(l.z()) || !above(b.z())) return 0.0;
   const Vec3d q = l + b;
   const double length = q.norm();
   const double bh = std::min(0.5 * length, 1.0);  // l.h = b.h = |l + b| / 2 for unit vectors
@@ -37,7 +42,7 @@ double brdf_specular(const Vec3d& l, const Vec3d& b, const GaussianFacets<double
 
 double btdf_specular(const Vec3d& l, const Vec3d& b, const GaussianFacets<double>& facets,
                      double n1, double n2, Masking masking) {
-  if (!(l.z() < 0.0) || !(b.z() > 0.0)) return 0.0;
+  if (!above(-l.z()) || !above(b.z())) return 0.0;
   const double eta = n2 / n1;
   const auto h = refracting_facet<double>(l, b, eta);
   if (!h) return 0.0;
@@ -53,7 +58,7 @@ double btdf_specular(const Vec3d& l, const Vec3d& b, const GaussianFacets<double
 double brdf_convex(const Vec3d& l, const Vec3d& b, const GaussianFacets<double>& facets, double n,
                    double k_df, double k_rg, double rho_d, std::optional<double> sigma_over_lambda,
                    Masking masking) {
-  if (!(l.z() > 0.0) || !(b.z() > 0.0)) return 0.0;
+  if (!above(l.z()) || !above(b.z())) return 0.0;
   const double rough = sigma_over_lambda
                            ? incoherent_reflection(std::min(l.z(), b.z()), *sigma_over_lambda, 1.0)
                            : 1.0;

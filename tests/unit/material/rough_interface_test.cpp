@@ -89,6 +89,19 @@ TEST(RoughInterface, BtdfAgainstExtendedPrecision) {
   EXPECT_GT(compared, 1000);
 }
 
+TEST(RoughInterface, GrazingDirectionsGiveNumbers) {
+  for (const double c : {0.0, 3.0, 1e6})
+    for (const double z : {5e-324, 1e-300, 1e-60, 1e-30, 1e-8})
+      for (const Masking masking : {Masking::None, Masking::VCavity, Masking::Smith}) {
+        const GaussianFacets<double> facets(c);
+        const Vec3d l(-1.0, 0.0, z), b(1.0, 0.0, z);
+        for (const double f : {brdf_specular(l, b, facets, 0.27, 2.95, masking),
+                               brdf_specular(b, b, facets, 1.5, 0.0, masking),
+                               btdf_specular(-b, b, facets, 1.0, 1.5, masking)})
+          EXPECT_TRUE(std::isfinite(f) && f >= 0.0) << c << " " << z << " " << f;
+      }
+}
+
 TEST(RoughInterface, Reciprocity) {
   Directions directions;
   for (const Masking masking : {Masking::None, Masking::VCavity, Masking::Smith})
