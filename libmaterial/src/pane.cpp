@@ -1,20 +1,8 @@
 #include "material/pane.h"
 
-#include <array>
-#include <cstdio>
-#include <stdexcept>
+#include "require.h"
 
 namespace atrium::material {
-namespace {
-
-void require(bool good, const char* name, double value, const char* range) {
-  if (good) return;
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "%s is %.9g, must be %s", name, value, range);
-  throw std::invalid_argument(text.data());
-}
-
-}  // namespace
 
 PaneParameters pane_from_visible(double tau_v, double rho_v) {
   constexpr double kRounding = 1e-9;

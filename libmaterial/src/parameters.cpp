@@ -1,27 +1,18 @@
 #include "material/parameters.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <stdexcept>
 
 #include "material/coherent.h"
 #include "material/fresnel.h"
 #include "material/interface_albedo.h"
+#include "require.h"
 
 namespace atrium::material {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kRoughest = 1e6;  // c beyond which facets are a mirror to any eye
-
-void require(bool good, const char* name, double value, const char* range) {
-  if (good) return;
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "%s is %.9g, must be %s", name, value, range);
-  throw std::invalid_argument(text.data());
-}
 
 void require_above_0(const char* name, double v) {
   require(v > 0.0 && v < kInf, name, v, "above 0 and finite");
