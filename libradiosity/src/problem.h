@@ -58,8 +58,11 @@ struct Problem {
   Sides<N> sides;
   bool specular = false;  ///< does anything mirror, refract or gloss?
 
+  [[nodiscard]] std::size_t group_count() const { return 1; }
   [[nodiscard]] std::size_t side_count() const { return elements.layout.element_count() * 2; }
   [[nodiscard]] float area(SideIndex i) const { return elements.layout.element_area[i / 2]; }
+  /// Number of a side's own random sequence.
+  [[nodiscard]] std::uint32_t stream(SideIndex i) const { return i; }
   /// The active side that a hit belongs to, or kNoSide.
   [[nodiscard]] SideIndex side_at(const scene::SurfacePoint& point, scene::Side side) const;
 };

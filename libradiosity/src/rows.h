@@ -39,6 +39,16 @@ struct Rows {
     }
     return sum;
   }
+  /// Variance that a row takes over from independent errors of what it sees.
+  [[nodiscard]] double apply_squared(std::size_t k, const std::vector<double>& variance) const {
+    if (rays[k] == 0) return 0.0;
+    double sum = 0.0;
+    for (std::uint64_t e = first[k]; e < first[k + 1]; ++e) {
+      const double weight = static_cast<double>(entries[e].weight) / rays[k];
+      sum += weight * weight * variance[entries[e].target & ~kChromatic];
+    }
+    return sum;
+  }
 };
 
 /// Traces rays [first_ray, last_ray) of every active side whose `wanted` is set and adds them to

@@ -28,6 +28,9 @@ struct SolveOptions {
   int direct_samples = 16;  ///< light samples per element side
   std::uint64_t caustic_photons =
       1000000;  ///< only traced where the scene has mirrors, solids, lobes
+  /// Asked for RMS of the relative standard error of total irradiance over the area, with a floor
+  /// of 1 % of the mean irradiance; 0: the fixed numbers of samples above.
+  double error = 0.0;
   int max_iterations = 200;
   double tolerance = 1e-4;  ///< of the iteration, relative to the largest radiosity
   double time_limit = 0.0;  ///< [s]; 0: none
