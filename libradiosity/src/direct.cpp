@@ -1,3 +1,4 @@
+#include "hemisphere.h"
 #include "passes.h"
 
 namespace atrium::radiosity {
@@ -15,28 +16,32 @@ class SideLight {
         which_(which),
         light_count_(problem.shading.scene().lights.size()) {}
 
-  void measure(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
-               Counters& counters) const {
+  /// \return  false if the point lies inside a closed body; asked only where `mixed`.
+  bool measure(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+               Counters& counters, bool mixed) const {
     scene::Sampler sampler(replicate_seed(problem_.options.seed, 0xd17ec7U, replicate),
                            problem_.stream(i), index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
     const float choice = sampler.next_1d();
-    const auto s = problem_.shading.lights().sample(p.position, normal, choice, sampler.next_2d());
-    if (!s || !(s->pdf > 0.0f)) return;
+    const Vec2f u = sampler.next_2d();
+    if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return false;
+    const auto s = problem_.shading.lights().sample(p.position, normal, choice, u);
+    if (!s || !(s->pdf > 0.0f)) return true;
     const bool is_surface = !s->dirac && s->light >= light_count_ && std::isfinite(s->distance);
-    if (which_ == DirectLights::NoSurfaces && is_surface) return;
+    if (which_ == DirectLights::NoSurfaces && is_surface) return true;
     const float cosine = s->wi.dot(normal);
-    if (!(cosine > 0.0f) || s->radiance.is_zero()) return;
+    if (!(cosine > 0.0f) || s->radiance.is_zero()) return true;
     const Spectrum<N> arriving =
         problem_.shading.visibility(p, *s, counters, Counter::RaysDirect) * s->radiance;
-    if (arriving.is_zero()) return;
+    if (arriving.is_zero()) return true;
     const Spectrum<N> irradiance = arriving * (cosine / s->pdf);
     const bool coupled = problem_.sides.coupled[i / 2] != 0;
     const Spectrum<N> body =
         coupled ? irradiance * problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
                 : irradiance;
     sums.add(0, replicate, irradiance, body);
+    return true;
   }
 
  private:
@@ -48,15 +53,16 @@ class SideLight {
 }  // namespace
 
 template <int N>
-bool sample_direct(const Problem<N>& problem, DirectLights which, const std::vector<Draw>& plan,
+bool sample_direct(const Problem<N>& problem, DirectLights which,
+                   const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
   const SideLight<N> light(problem, which);
   return draw_samples(plan, tally, work, counters,
                       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                           Counters& c) {
-                        light.measure(i, replicate, index, sums, c);
-                        return true;
+                        return light.measure(i, replicate, index, sums, c,
+                                             !mixed.empty() && mixed[i] != 0);
                       });
 }
 
@@ -77,12 +83,14 @@ template <int N>
 Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
                          Counters& counters) {
   Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-  sample_direct(problem, which, same_for_all(problem.sides.active, samples), tally, work, counters);
+  sample_direct(problem, which, {}, same_for_all(problem.sides.active, samples), tally, work,
+                counters);
   return estimate_of(tally, problem);
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                              \
-  template bool sample_direct(const Problem<N>&, DirectLights, const std::vector<Draw>&,   \
+  template bool sample_direct(const Problem<N>&, DirectLights,                             \
+                              const std::vector<std::uint8_t>&, const std::vector<Draw>&,  \
                               Tally<N>&, Work&, Counters&);                                \
   template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                    \
   template Estimate<N> direct_light(const Problem<N>&, int, DirectLights, Work&, Counters&);

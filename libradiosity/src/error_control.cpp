@@ -26,9 +26,41 @@ Neighbours::Neighbours(const SurfaceField& layout) {
   }
 }
 
+namespace {
+
+/// Mean over a side and its neighbours.
+template <int N, class Value>
+double local_mean(const Neighbours& neighbours, SideIndex i, Value&& value) {
+  double sum = value(i);
+  double count = 1.0;
+  neighbours.visit(i, [&](SideIndex j) {
+    sum += value(j);
+    count += 1.0;
+  });
+  return sum / count;
+}
+
+}  // namespace
+
 template <int N>
-std::vector<double> error_weights(const Problem<N>& problem, const Neighbours& neighbours,
-                                  const SideValues<N>& irradiance) {
+SideValues<N> smoothed(const Problem<N>& problem, const Neighbours& neighbours,
+                       const SideValues<N>& values) {
+  SideValues<N> result(values.size());
+  for (const SideIndex i : problem.sides.active) {
+    Spectrum<N> sum = problem.area(i) * values[i];
+    float area = problem.area(i);
+    neighbours.visit(i, [&](SideIndex j) {
+      if (problem.sides.is_active[j] == 0) return;
+      sum += problem.area(j) * values[j];
+      area += problem.area(j);
+    });
+    result[i] = sum / area;
+  }
+  return result;
+}
+
+template <int N>
+std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance) {
   double area = 0.0;
   double flux = 0.0;
   for (const SideIndex i : problem.sides.active) {
@@ -39,13 +71,7 @@ std::vector<double> error_weights(const Problem<N>& problem, const Neighbours& n
   if (!(flux > 0.0)) return weights;
   const double least = 0.01 * flux / area;
   for (const SideIndex i : problem.sides.active) {
-    double sum = static_cast<double>(irradiance[i].mean());
-    double count = 1.0;
-    neighbours.visit(i, [&](SideIndex j) {
-      sum += static_cast<double>(irradiance[j].mean());
-      count += 1.0;
-    });
-    const double scale = std::max(least, sum / count);
+    const double scale = std::max(least, static_cast<double>(irradiance[i].mean()));
     weights[i] = static_cast<double>(problem.area(i)) / (area * scale * scale);
   }
   return weights;
@@ -54,24 +80,35 @@ std::vector<double> error_weights(const Problem<N>& problem, const Neighbours& n
 template <int N>
 std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours& neighbours,
                                     const Tally<N>& tally, Samples whose) {
-  std::vector<double> own(problem.side_count(), 0.0);
+  const std::vector<SideIndex>& active = problem.sides.active;
+  std::vector<double> value(problem.side_count(), 0.0);
+  for (const SideIndex i : active)
+    for (std::size_t g = 0; g < tally.groups(); ++g)
+      value[i] += static_cast<double>(tally.mean(i, g).mean());
+  std::vector<double> scale(problem.side_count(), 0.0);     // squared
+  std::vector<double> relative(problem.side_count(), 0.0);  // variance over scale
   double all = 0.0;
-  for (const SideIndex i : problem.sides.active) {
-    own[i] = tally.variance(i) * tally.valid(i);
-    all += own[i];
+  double count = 0.0;
+  for (const SideIndex i : active) {
+    const double mean = local_mean<N>(neighbours, i, [&](SideIndex j) { return value[j]; });
+    scale[i] = mean * mean;
+    if (!(scale[i] > 0.0) || tally.valid(i) == 0) continue;
+    relative[i] = tally.variance(i) * tally.valid(i) / scale[i];
+    all += relative[i];
+    count += 1.0;
   }
-  const double mean = problem.sides.active.empty()
-                          ? 0.0
-                          : all / static_cast<double>(problem.sides.active.size());
   std::vector<double> result(problem.side_count(), 0.0);
-  for (const SideIndex i : problem.sides.active) {
-    double sum = whose == Samples::All ? own[i] : 0.0;
-    double count = whose == Samples::All ? 1.0 : 0.0;
-    neighbours.visit(i, [&](SideIndex j) {
-      sum += own[j];
-      count += 1.0;
-    });
-    result[i] = count > 0.0 ? sum / count : mean;
+  for (const SideIndex i : active) {
+    double sum = 0.0;
+    double near = 0.0;
+    const auto take = [&](SideIndex j) {
+      if (tally.valid(j) == 0 || !(scale[j] > 0.0)) return;
+      sum += relative[j];
+      near += 1.0;
+    };
+    if (whose == Samples::All) take(i);
+    neighbours.visit(i, take);
+    result[i] = scale[i] * (near > 0.0 ? sum / near : count > 0.0 ? all / count : 0.0);
   }
   return result;
 }
@@ -107,8 +144,8 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                                    \
-  template std::vector<double> error_weights(const Problem<N>&, const Neighbours&,               \
-                                             const SideValues<N>&);                              \
+  template SideValues<N> smoothed(const Problem<N>&, const Neighbours&, const SideValues<N>&);   \
+  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&);            \
   template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
                                                const Tally<N>&, Samples);                        \
   template std::vector<std::vector<Draw>> plan_samples(const Problem<N>&,                        \

@@ -21,16 +21,22 @@ class Neighbours {
   std::vector<std::uint32_t> first_, element_;
 };
 
+/// Area mean over every side and its neighbours: takes most noise off a smooth field and keeps
+/// its flux nearly.
+template <int N>
+[[nodiscard]] SideValues<N> smoothed(const Problem<N>& problem, const Neighbours& neighbours,
+                                     const SideValues<N>& values);
+
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
 /// floor of 1 % of the mean. The RMS over these is "the error" (docs/radiosity.md, Eq. 9).
 template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
-                                                const Neighbours& neighbours,
                                                 const SideValues<N>& irradiance);
 
-/// Variance of one sample of each side (lane mean, all groups): of the neighbours' samples for a
-/// decision about a side, which must not depend on the samples that it stops; of its own and the
-/// neighbours' samples for the report, which four replicates alone would make unsteady.
+/// Variance of one sample of each side (lane mean, all groups), pooled as relative variance: of the
+/// neighbours' samples for a decision about a side, which must not depend on the samples that it
+/// stops; of its own and the neighbours' samples for the report, which four replicates alone would
+/// make unsteady.
 enum class Samples { Neighbours, All };
 template <int N>
 [[nodiscard]] std::vector<double> sample_variance(const Problem<N>& problem,

@@ -1,5 +1,3 @@
-#include <numbers>
-
 #include "follow.h"
 #include "hemisphere.h"
 #include "passes.h"
@@ -14,8 +12,9 @@ using scene::Counters;
 template <int N>
 class Gatherer {
  public:
-  Gatherer(const Problem<N>& problem, const GatherField<N>& field)
-      : problem_(problem), field_(field), hot_(field.hot != nullptr && !field.hot->empty()) {}
+  Gatherer(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
+           const HotPatches<N>& hot)
+      : problem_(problem), field_(field), hot_(hot) {}
 
   bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
               Counters& counters) const {
@@ -29,110 +28,113 @@ class Gatherer {
             bool specular) {
           const SideIndex j = problem_.side_at(at.point, at.side);
           if (j == kNoSide) return;
-          const float share = specular ? 1.0f : share_of_chance(start, at, j);
-          for (std::size_t g = 0; g < field_.exchange.size(); ++g) {
+          const float share =
+              specular ? 1.0f : share_of_chance(hot_, start, at.point.position, at.ng, j);
+          for (std::size_t g = 0; g < field_.size(); ++g) {
             const Spectrum<N> arriving = weight * radiosity_at(at, wo, j, g, share);
             if (!arriving.is_zero())
               sums.add(g, replicate, arriving, arriving * start.body_weight);
           }
         });
-    if (end.inside_solid) return false;
-    if (hot_ && index % 2 == 0) sample_hot(i, replicate, index / 2, sums, counters);
-    return true;
+    return !end.inside_solid;
   }
 
  private:
-  static_assert(HotPatches<N>::kSamplesPerRay == 0.5f, "one hot sample for every second ray");
-
   /// Radiosity at a point of side j: reflectance of the very point (textures) times irradiance of
   /// its element. Of the light that hot patches got first, only `share`.
   Spectrum<N> radiosity_at(const scene::Interaction<N>& at, const Vec3f& wo, SideIndex j,
                            std::size_t group, float share) const {
-    const SideValues<N>& field = field_.exchange[group];
-    Spectrum<N> own = field[j];
-    Spectrum<N> other = field[j ^ 1U];
-    if (share != 1.0f) {
-      own -= (1.0f - share) * field_.source[group][j];
-      other -= (1.0f - share) * field_.source[group][j ^ 1U];
-    }
+    Spectrum<N> own = field_[group][j];
+    const Spectrum<N>& other = field_[group][j ^ 1U];
+    if (share != 1.0f) own -= (1.0f - share) * hot_.source(j, group);
     if (at.bsdf.coupled()) return leaving(problem_.sides, j, own, other);
     return at.bsdf.diffuse_reflectance(wo) * own + at.bsdf.diffuse_transmittance() * other;
   }
 
-  /// Balance heuristic for a point of a hot patch that a hemisphere ray hit.
-  float share_of_chance(const HemisphereRay<N>& start, const scene::Interaction<N>& at,
-                        SideIndex j) const {
-    if (!hot_ || !field_.hot->contains(j)) return 1.0f;
-    const Vec3f d = at.point.position - start.ray.origin;
-    const float cosine = std::abs(at.ng.dot(start.ray.direction));
-    if (!(cosine > 0.0f)) return 1.0f;
-    const float chosen = field_.hot->density(j) * d.squaredNorm() / cosine;
-    return share(start.cosine, chosen);
-  }
-  static float share(float receiver_cosine, float chosen) {
-    const float chance = receiver_cosine * std::numbers::inv_pi_v<float>;
-    return chance / (chance + HotPatches<N>::kSamplesPerRay * chosen);
-  }
+  const Problem<N>& problem_;
+  const std::vector<SideValues<N>>& field_;
+  const HotPatches<N>& hot_;
+};
 
-  void sample_hot(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
-                  Counters& counters) const {
+template <int N>
+class HotSampler {
+ public:
+  HotSampler(const Problem<N>& problem, const HotPatches<N>& hot) : problem_(problem), hot_(hot) {}
+
+  /// \return  false if the point lies inside a closed body; asked only where `mixed`.
+  bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+              Counters& counters, bool mixed) const {
     scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x407caU, replicate),
                            problem_.stream(i), index);
     const scene::SurfacePoint from = problem_.points.sample(i / 2, sampler.next_2d());
-    const SideIndex j = field_.hot->sample(sampler.next_1d());
+    const SideIndex j = hot_.sample(sampler.next_1d());
     const scene::SurfacePoint to = problem_.points.sample(j / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? from.ng : Vec3f(-from.ng);
+    if (mixed && is_buried(problem_, from, normal, sampler.next_2d(), counters)) return false;
     const Vec3f facing = side_of(j) == scene::Side::Front ? to.ng : Vec3f(-to.ng);
     const Vec3f d = to.position - from.position;
-    const float distance2 = d.squaredNorm();
-    if (!(distance2 > 0.0f)) return;
-    const Vec3f wi = d / std::sqrt(distance2);
+    if (!(d.squaredNorm() > 0.0f)) return true;
+    const Vec3f wi = d.normalized();
     const float receiver_cosine = wi.dot(normal);
     const float sender_cosine = -wi.dot(facing);
-    if (!(receiver_cosine > 0.0f) || !(sender_cosine > 0.0f)) return;
-    const Spectrum<N> seen = problem_.shading.transmittance(
-        segment(from, to), counters, Counter::RaysRow);
-    if (seen.is_zero()) return;
-    const float chosen = field_.hot->density(j) * distance2 / sender_cosine;
-    const float weight = receiver_cosine * std::numbers::inv_pi_v<float> *
-                         (1.0f - share(receiver_cosine, chosen)) /
-                         (HotPatches<N>::kSamplesPerRay * chosen);
+    if (!(receiver_cosine > 0.0f) || !(sender_cosine > 0.0f)) return true;
+    const Spectrum<N> seen =
+        problem_.shading.transmittance(segment(from, to), counters, Counter::RaysRow);
+    if (seen.is_zero()) return true;
+    // cos / pi over the density, times the share of this strategy.
+    const float weight = hot_.share_of_chance(j, d, receiver_cosine, sender_cosine);
     const scene::Interaction<N> at = problem_.shading.interact(to, -wi);
     const Spectrum<N> body =
         problem_.sides.coupled[i / 2] != 0
             ? problem_.shading.interact(from, normal).bsdf.body_weight(receiver_cosine)
             : Spectrum<N>::one();
-    for (std::size_t g = 0; g < field_.source.size(); ++g) {
-      const SideValues<N>& source = field_.source[g];
-      const Spectrum<N> radiosity =
-          at.bsdf.coupled() ? leaving(problem_.sides, j, source[j], source[j ^ 1U])
-                            : at.bsdf.diffuse_reflectance(at.to_local(-wi)) * source[j] +
-                                  at.bsdf.diffuse_transmittance() * source[j ^ 1U];
-      const Spectrum<N> arriving = seen * radiosity * weight;
+    for (std::size_t g = 0; g < hot_.groups(); ++g) {
+      const Spectrum<N> reflectance = at.bsdf.coupled()
+                                          ? problem_.sides.reflectance[j]
+                                          : at.bsdf.diffuse_reflectance(at.to_local(-wi));
+      const Spectrum<N> arriving = seen * reflectance * hot_.source(j, g) * weight;
       if (!arriving.is_zero()) sums.add(g, replicate, arriving, arriving * body);
     }
+    return true;
   }
 
+ private:
   const Problem<N>& problem_;
-  const GatherField<N>& field_;
-  bool hot_;
+  const HotPatches<N>& hot_;
 };
 
 }  // namespace
 
 template <int N>
-bool sample_gather(const Problem<N>& problem, const GatherField<N>& field,
-                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
-                   Counters& counters) {
-  const Gatherer<N> gatherer(problem, field);
+bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
+                   const HotPatches<N>& hot, const std::vector<Draw>& plan, Tally<N>& tally,
+                   Work& work, Counters& counters) {
+  const Gatherer<N> gatherer(problem, field, hot);
   return draw_samples(plan, tally, work, counters,
                       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                           Counters& c) { return gatherer.sample(i, replicate, index, sums, c); });
 }
 
+template <int N>
+bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
+                const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
+                Tally<N>& tally, Work& work, Counters& counters) {
+  if (hot.empty()) return true;
+  const HotSampler<N> sampler(problem, hot);
+  return draw_samples(plan, tally, work, counters,
+                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+                          Counters& c) {
+                        return sampler.sample(i, replicate, index, sums, c, mixed[i] != 0);
+                      });
+}
+
 #define ATRIUM_INSTANTIATE(N)                                                                    \
-  template bool sample_gather(const Problem<N>&, const GatherField<N>&, const std::vector<Draw>&, \
-                              Tally<N>&, Work&, Counters&);
+  template bool sample_gather(const Problem<N>&, const std::vector<SideValues<N>>&,              \
+                              const HotPatches<N>&, const std::vector<Draw>&, Tally<N>&, Work&,  \
+                              Counters&);                                                        \
+  template bool sample_hot(const Problem<N>&, const HotPatches<N>&,                              \
+                           const std::vector<std::uint8_t>&, const std::vector<Draw>&, Tally<N>&, \
+                           Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

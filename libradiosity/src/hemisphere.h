@@ -1,6 +1,6 @@
 #pragma once
 
-#include "problem.h"
+#include "hot_patches.h"
 
 namespace atrium::radiosity {
 
@@ -22,5 +22,24 @@ struct HemisphereRay {
       body_weight = problem.shading.interact(p, normal).bsdf.body_weight(local.z());
   }
 };
+
+/// Does a ray from a point of a side start inside a closed opaque body? One ray decides.
+template <int N>
+[[nodiscard]] bool is_buried(const Problem<N>& problem, const scene::SurfacePoint& p,
+                             const Vec3f& normal, const Vec2f& u, scene::Counters& counters) {
+  const Vec3f w = Frame(normal).to_world(sample_cosine_hemisphere(u)).normalized();
+  const auto hit = problem.shading.closest({scene::offset_origin(p, w), w}, counters,
+                                           scene::Counter::RaysProbe);
+  return hit && hit->ng.dot(w) > 0.0f && problem.sides.closed_opaque[hit->object.value] != 0;
+}
+
+/// HotPatches::share_of_chance for the point that a hemisphere ray hit, straight or through panes.
+template <int N>
+[[nodiscard]] float share_of_chance(const HotPatches<N>& hot, const HemisphereRay<N>& start,
+                                    const Vec3f& position, const Vec3f& normal, SideIndex j) {
+  if (!hot.contains(j)) return 1.0f;
+  return hot.share_of_chance(j, position - start.ray.origin, start.cosine,
+                             std::abs(normal.dot(start.ray.direction)));
+}
 
 }  // namespace atrium::radiosity

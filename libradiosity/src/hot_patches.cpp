@@ -14,7 +14,7 @@ constexpr double kFew = 0.1;
 }  // namespace
 
 template <int N>
-HotPatches<N>::HotPatches(const Problem<N>& problem, const std::vector<SideValues<N>>& source) {
+HotPatches<N>::HotPatches(const Problem<N>& problem, std::vector<SideValues<N>> source) {
   const std::vector<SideIndex>& active = problem.sides.active;
   std::vector<double> radiosity(active.size(), 0.0);
   double area = 0.0;
@@ -37,9 +37,13 @@ HotPatches<N>::HotPatches(const Problem<N>& problem, const std::vector<SideValue
   double hot_area = 0.0;
   double hot_squares = 0.0;
   for (std::size_t k = 0; k < active.size(); ++k) {
-    if (!(radiosity[k] > threshold)) continue;
-    const double a = static_cast<double>(problem.area(active[k]));
-    sides_.push_back(active[k]);
+    const SideIndex i = active[k];
+    // Light that comes through a sheet stays with the hemisphere rays.
+    if (!(radiosity[k] > threshold) || !problem.sides.transmittance[i].is_zero() ||
+        !problem.sides.transmittance[i ^ 1U].is_zero())
+      continue;
+    const double a = static_cast<double>(problem.area(i));
+    sides_.push_back(i);
     hot_flux += a * radiosity[k];
     hot_area += a;
     hot_squares += a * radiosity[k] * radiosity[k];
@@ -56,6 +60,7 @@ HotPatches<N>::HotPatches(const Problem<N>& problem, const std::vector<SideValue
         static_cast<float>(share / static_cast<double>(problem.area(sides_[h])));
   }
   for (double& u : until_) u /= hot_flux;
+  source_ = std::move(source);
 }
 
 template <int N>

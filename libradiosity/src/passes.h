@@ -22,10 +22,12 @@ template <int N>
 [[nodiscard]] Estimate<N> estimate_of(const Tally<N>& tally, const Problem<N>& problem);
 
 /// Light that arrives straight or through panes: draws the samples of `plan` into the tally.
-/// \param which  lights that take part.
+/// \param which  lights that take part. \param mixed  by side: may a part of it lie inside a closed
+/// body? Points there count for nothing. Empty: no side is.
 enum class DirectLights { All, NoSurfaces };
 template <int N>
-bool sample_direct(const Problem<N>& problem, DirectLights which, const std::vector<Draw>& plan,
+bool sample_direct(const Problem<N>& problem, DirectLights which,
+                   const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, scene::Counters& counters);
 /// The same for solvers that need one estimate of all groups, `samples` for every active side.
 template <int N>
@@ -57,17 +59,18 @@ template <int N>
 void smooth_photons(const Problem<N>& problem, const std::vector<std::uint32_t>& photons,
                     Estimate<N>& caustic);
 
-/// Light that the field of all groups gives: what a hemisphere ray finds.
+/// One bounce against a known field with fresh hemisphere rays.
+/// \param field  exchange irradiance by group, all light. \param hot  their own light only with
+/// the balance heuristic's share, see sample_hot.
 template <int N>
-struct GatherField {
-  std::vector<SideValues<N>> exchange;  ///< by group; irradiance (E_B where coupled), all light
-  std::vector<SideValues<N>> source;    ///< the part of it that comes straight from lights
-  const HotPatches<N>* hot = nullptr;   ///< sampled like lights besides; may be null
-};
-/// One bounce against a known field with fresh rays.
+bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
+                   const HotPatches<N>& hot, const std::vector<Draw>& plan, Tally<N>& tally,
+                   Work& work, scene::Counters& counters);
+
+/// The rest of the light of hot patches: points on them chosen by flux.
 template <int N>
-bool sample_gather(const Problem<N>& problem, const GatherField<N>& field,
-                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
-                   scene::Counters& counters);
+bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
+                const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
+                Tally<N>& tally, Work& work, scene::Counters& counters);
 
 }  // namespace atrium::radiosity

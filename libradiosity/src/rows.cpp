@@ -16,7 +16,7 @@ using scene::Counters;
 template <int N>
 struct Chunk {
   std::vector<typename Rows<N>::Entry> entries;
-  std::vector<Spectrum<N>> spectral;
+  std::vector<Spectrum<N>> spectral, hot;
   std::vector<std::uint32_t> counts, rays, dropped;
   std::vector<float> escaped;
 };
@@ -26,16 +26,25 @@ class RowTracer {
  public:
   using Entry = typename Rows<N>::Entry;
 
-  RowTracer(const Problem<N>& problem, const Rows<N>& old, int first, int last)
-      : problem_(problem), old_(old), first_(first), last_(last) {}
+  RowTracer(const Problem<N>& problem, const HotPatches<N>& hot, const Rows<N>& old, int first,
+            int last)
+      : problem_(problem),
+        hot_(hot),
+        old_(old),
+        first_(first),
+        last_(last),
+        hot_sums_(hot.groups() * 2) {}
 
   void copy_old(std::size_t k, Chunk<N>& chunk) {
     row_.clear();
+    std::fill(hot_sums_.begin(), hot_sums_.end(), Spectrum<N>());
     float escaped = 0.0f;
     std::uint32_t rays = 0;
     std::uint32_t dropped = 0;
     if (k < old_.size()) {
       take_old(k, chunk);
+      for (std::size_t h = 0; h < hot_sums_.size(); ++h)
+        hot_sums_[h] = old_.hot[k * hot_sums_.size() + h];
       escaped = old_.escaped[k];
       rays = old_.rays[k];
       dropped = old_.dropped[k];
@@ -53,9 +62,22 @@ class RowTracer {
       const PathEnd<N> end = follow<N>(
           problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
           Counter::RaysRow, counters,
-          [&](const scene::Interaction<N>& at, const Vec3f&, const Spectrum<N>& weight, bool) {
+          [&](const scene::Interaction<N>& at, const Vec3f&, const Spectrum<N>& weight,
+              bool specular) {
             const SideIndex target = problem_.side_at(at.point, at.side);
-            if (target != kNoSide) put(target, weight, start.body_weight.mean(), chunk);
+            if (target == kNoSide) return;
+            put(target, weight, start.body_weight.mean(), chunk);
+            if (!hot_.contains(target)) return;
+            const float share =
+                specular ? 1.0f
+                         : share_of_chance(hot_, start, at.point.position, at.ng, target);
+            for (std::size_t g = 0; g < hot_.groups(); ++g) {
+              const Spectrum<N> arriving =
+                  weight * share *
+                  problem_.sides.reflectance[target] * hot_.source(target, g);
+              hot_sums_[2 * g] += arriving;
+              hot_sums_[2 * g + 1] += arriving * start.body_weight;
+            }
           });
       chunk.escaped.back() += end.escaped.mean();
       ++(end.inside_solid ? chunk.dropped : chunk.rays).back();
@@ -77,6 +99,7 @@ class RowTracer {
       chunk.entries.back().weight += e.weight;
       chunk.entries.back().body += e.body;
     }
+    chunk.hot.insert(chunk.hot.end(), hot_sums_.begin(), hot_sums_.end());
     chunk.counts.push_back(static_cast<std::uint32_t>(chunk.entries.size() - before));
   }
 
@@ -103,9 +126,11 @@ class RowTracer {
   }
 
   const Problem<N>& problem_;
+  const HotPatches<N>& hot_;
   const Rows<N>& old_;
   int first_, last_;
   std::vector<Entry> row_;
+  std::vector<Spectrum<N>> hot_sums_;
 };
 
 template <int N>
@@ -123,6 +148,7 @@ Rows<N> join(std::vector<Chunk<N>>& chunks, std::size_t sides) {
       rows.entries.push_back(e);
     }
     for (const std::uint32_t n : c.counts) rows.first.push_back(rows.first.back() + n);
+    rows.hot.insert(rows.hot.end(), c.hot.begin(), c.hot.end());
     rows.spectral.insert(rows.spectral.end(), c.spectral.begin(), c.spectral.end());
     rows.rays.insert(rows.rays.end(), c.rays.begin(), c.rays.end());
     rows.dropped.insert(rows.dropped.end(), c.dropped.begin(), c.dropped.end());
@@ -135,14 +161,14 @@ Rows<N> join(std::vector<Chunk<N>>& chunks, std::size_t sides) {
 }  // namespace
 
 template <int N>
-Rows<N> trace_rows(const Problem<N>& problem, Rows<N> old, const std::vector<std::uint8_t>& wanted,
+Rows<N> trace_rows(const Problem<N>& problem, const HotPatches<N>& hot, Rows<N> old, const std::vector<std::uint8_t>& wanted,
                    int first_ray, int last_ray, Work& work, Counters& counters) {
   constexpr std::size_t kGrain = 128;
   const std::size_t sides = problem.sides.active.size();
   std::vector<Chunk<N>> chunks((sides + kGrain - 1) / kGrain);
   const auto build = [&](std::size_t begin, std::size_t end, Counters* c) {
     Chunk<N>& chunk = chunks[begin / kGrain];
-    RowTracer<N> tracer(problem, old, first_ray, last_ray);
+    RowTracer<N> tracer(problem, hot, old, first_ray, last_ray);
     for (std::size_t k = begin; k < end; ++k) {
       tracer.copy_old(k, chunk);
       if (c != nullptr && wanted[k] != 0) tracer.trace(k, chunk, *c);
@@ -154,7 +180,9 @@ Rows<N> trace_rows(const Problem<N>& problem, Rows<N> old, const std::vector<std
   // Stopped early: the sides that were not reached keep the rows that they had.
   for (std::size_t b = 0; b < chunks.size(); ++b)
     if (chunks[b].counts.empty()) build(b * kGrain, std::min(sides, (b + 1) * kGrain), nullptr);
-  return join(chunks, sides);
+  Rows<N> rows = join(chunks, sides);
+  rows.groups = hot.groups();
+  return rows;
 }
 
 namespace {
@@ -320,7 +348,7 @@ Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideV
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                                    \
-  template Rows<N> trace_rows(const Problem<N>&, Rows<N>, const std::vector<std::uint8_t>&, int, \
+  template Rows<N> trace_rows(const Problem<N>&, const HotPatches<N>&, Rows<N>, const std::vector<std::uint8_t>&, int, \
                               int, Work&, Counters&);                                            \
   template Iteration solve_rows(const Problem<N>&, const Rows<N>&, const SideValues<N>&,         \
                                 const SideValues<N>&, SideValues<N>&, Work&);

@@ -16,6 +16,7 @@ struct GroupLight {
   std::vector<float> variance;  ///< of their sum, sampling of this group only
   SideValues<N> source;         ///< exchange irradiance from lights
   SideValues<N> bounced;        ///< exchange irradiance of the rows' solution
+  SideValues<N> seen;           ///< ... smoothed: what fresh rays read
 };
 
 template <int N>
@@ -29,7 +30,10 @@ class RowSolver {
         neighbours_(problem.elements.layout),
         groups_(problem.group_count()),
         direct_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
-        gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled) {}
+        shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
+        gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
+        exposed_(problem.side_count(), 1.0f),
+        mixed_(problem.side_count(), 0) {}
 
   Solution<N> solve() {
     work_.begin("direct light", 0.15);
@@ -39,7 +43,6 @@ class RowSolver {
     photons_ = trace_photons(problem_, work_, counters_);
     build_rows();
     work_.begin("gathering", 0.98);
-    hot_ = HotPatches<N>(problem_, sources());
     draw_gather(same_for_all(lit_sides(), by_error() ? kPilot : problem_.options.gather_rays));
     assemble();
     if (by_error()) reach_error();
@@ -56,16 +59,19 @@ class RowSolver {
   }
 
   void draw_direct(const std::vector<Draw>& plan) {
-    sample_direct(problem_, DirectLights::All, plan, direct_, work_, counters_);
+    sample_direct(problem_, DirectLights::All, mixed_, plan, direct_, work_, counters_);
+  }
+  void draw_hot(const std::vector<Draw>& plan) {
+    sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
   }
 
   void draw_gather(const std::vector<Draw>& plan) {
-    GatherField<N> field{.exchange = {}, .source = sources(), .hot = &hot_};
+    std::vector<SideValues<N>> field;
     for (const GroupLight<N>& g : groups_) {
-      field.exchange.push_back(g.source);
-      for (const SideIndex i : problem_.sides.active) field.exchange.back()[i] += g.bounced[i];
+      field.push_back(g.source);
+      for (const SideIndex i : problem_.sides.active) field.back()[i] += g.seen[i];
     }
-    sample_gather(problem_, field, plan, gathered_, work_, counters_);
+    sample_gather(problem_, field, hot_, plan, gathered_, work_, counters_);
   }
 
   /// A first round of rays for every side; more where it found light. A side that sees only dark
@@ -75,17 +81,48 @@ class RowSolver {
     const int first = std::min(kPilot, all);
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
-    rows_ =
-        trace_rows<N>(problem_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_, counters_);
-    find_buried();
     take_direct();
+    hot_ = HotPatches<N>(problem_, sources());
+    know_hot_light();
+    rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
+                          counters_);
+    find_buried();
+    draw_direct_of_mixed();
+    take_direct();
+    draw_hot(same_for_all(problem_.sides.active, kPilot));
     solve_bounces();
     if (first == all) return;
     std::vector<std::uint8_t> lit(n, 0);
     for (std::size_t k = 0; k < n; ++k) lit[k] = is_lit(problem_.sides.active[k]) ? 1 : 0;
     work_.begin("rows", 0.6);
-    rows_ = trace_rows<N>(problem_, std::move(rows_), lit, first, all, work_, counters_);
+    rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), lit, first, all, work_, counters_);
     solve_bounces();
+  }
+
+  /// An error in the light of hot patches is one error of everything they light, so they get many
+  /// more light samples than others before it is used.
+  void know_hot_light() {
+    constexpr int kSamples = 256;
+    if (hot_.empty()) return;
+    draw_direct(same_for_all(hot_.sides(), kSamples));
+    take_direct();
+    hot_.set_source(sources());
+  }
+
+  /// Relative variance of the whole flux that hot patches reflect first.
+  [[nodiscard]] double hot_flux_variance() const {
+    double flux = 0.0;
+    double variance = 0.0;
+    for (const SideIndex i : hot_.sides()) {
+      const double scale = static_cast<double>(problem_.area(i)) *
+                           static_cast<double>(problem_.sides.reflectance[i].mean());
+      double direct = 0.0;
+      for (std::size_t g = 0; g < groups_.size(); ++g)
+        direct += static_cast<double>(hot_.source(i, g).mean());
+      flux += scale * direct;
+      variance += scale * scale * direct_.variance(i);
+    }
+    return flux > 0.0 ? variance / (flux * flux) : 0.0;
   }
 
   [[nodiscard]] bool is_lit(SideIndex i) const {
@@ -100,9 +137,9 @@ class RowSolver {
     return lit;
   }
 
-  /// Points inside closed bodies receive nothing; means are over the others.
+  /// Points inside closed bodies receive nothing; means are over the others. Where a side has both,
+  /// every point's samples have to ask which it is.
   void find_buried() {
-    exposed_.assign(problem_.side_count(), 1.0f);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
       if (rows_.dropped[k] == 0) continue;
@@ -111,8 +148,15 @@ class RowSolver {
       if (rows_.rays[k] == 0) result_.valid[i] = 0;
     }
   }
-  [[nodiscard]] float exposure_factor(SideIndex i) const {
-    return exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 1.0f;
+  void draw_direct_of_mixed() {
+    std::vector<SideIndex> again;
+    for (const SideIndex i : problem_.sides.active)
+      if (exposed_[i] < 1.0f && result_.valid[i] != 0) again.push_back(i);
+    for (const SideIndex i : again) {
+      mixed_[i] = 1;
+      direct_.forget(i);
+    }
+    draw_direct(same_for_all(again, by_error() ? kPilot : problem_.options.direct_samples));
   }
 
   /// What the lights' samples say so far becomes the source of every group.
@@ -123,12 +167,12 @@ class RowSolver {
       light.caustic = photons_.caustic[g].irradiance;
       light.source.assign(problem_.side_count(), {});
       for (const SideIndex i : problem_.sides.active) {
-        const float factor = exposure_factor(i);
-        light.direct.plain[i] = factor * direct_.mean(i, g);
-        light.caustic.plain[i] *= factor;
+        const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
+        light.direct.plain[i] = direct_.mean(i, g);
+        light.caustic.plain[i] *= exposed;
         if (problem_.sides.any_coupled) {
-          light.direct.body[i] = factor * direct_.mean_body(i, g);
-          light.caustic.body[i] *= factor;
+          light.direct.body[i] = direct_.mean_body(i, g);
+          light.caustic.body[i] *= exposed;
         }
         light.source[i] =
             exchange(problem_, light.direct, i) + exchange(problem_, light.caustic, i);
@@ -137,27 +181,44 @@ class RowSolver {
   }
 
   void solve_bounces() {
-    const SideValues<N> none(problem_.side_count());
     Iteration slowest;
-    for (GroupLight<N>& g : groups_) {
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      GroupLight<N>& g = groups_[n];
+      SideValues<N> shot(problem_.side_count());
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const SideIndex i = problem_.sides.active[k];
+        const bool body = problem_.sides.coupled[i / 2] != 0;
+        shot[i] = shot_light(i, n, body);
+        if (rows_.rays[k] > 0)
+          shot[i] += rows_.hot_sum(k, n, body) / static_cast<float>(rows_.rays[k]);
+      }
       g.bounced.resize(problem_.side_count());
-      const Iteration it = solve_rows(problem_, rows_, g.source, none, g.bounced, work_);
+      const Iteration it =
+          solve_rows(problem_, rows_, hot_.without_hot(g.source), shot, g.bounced, work_);
       if (it.iterations >= slowest.iterations) slowest = it;
+      g.seen = smoothed(problem_, neighbours_, g.bounced);
     }
     slowest.iterations += result_.iteration.iterations;
     result_.iteration = slowest;
   }
 
+  /// First light of hot patches as far as samples of them found it.
+  [[nodiscard]] Spectrum<N> shot_light(SideIndex i, std::size_t group, bool body) const {
+    return body ? shot_.mean_body(i, group) : shot_.mean(i, group);
+  }
+
+  /// What the rows' entries read.
   SideValues<N> radiosity(const GroupLight<N>& g) const {
+    const SideValues<N> source = hot_.without_hot(g.source);
     SideValues<N> b(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
-      b[i] = leaving(problem_.sides, i, g.source[i] + g.bounced[i],
-                     g.source[i ^ 1U] + g.bounced[i ^ 1U]);
+      b[i] =
+          leaving(problem_.sides, i, source[i] + g.seen[i], source[i ^ 1U] + g.seen[i ^ 1U]);
     return b;
   }
 
-  /// Fresh rays against the solution, pooled with the rows' own estimate; what that changes is
-  /// propagated through the rows once more.
+  /// Fresh rays against the smoothed solution, pooled with the rows' own estimate against it; what
+  /// that changes is propagated through the rows once more, as a smooth field again.
   void assemble() {
     for (std::size_t g = 0; g < groups_.size(); ++g) improve(g);
     sum_groups();
@@ -168,18 +229,22 @@ class RowSolver {
     GroupLight<N>& g = groups_[group];
     g.indirect = Irradiance<N>(problem_.side_count(), problem_.sides.any_coupled);
     const SideValues<N> b = radiosity(g);
-    SideValues<N> correction(problem_.side_count());
-    for (std::size_t k = 0; k < rows_.size(); ++k)
-      correction[problem_.sides.active[k]] = pool(k, group, b);
-    SideValues<N> change = correction;
+    for (std::size_t k = 0; k < rows_.size(); ++k) pool(k, group, b);
+    SideValues<N> difference(problem_.side_count());
+    for (const SideIndex i : problem_.sides.active)
+      difference[i] = exchange(problem_, g.indirect, i);
+    difference = smoothed(problem_, neighbours_, difference);
+    for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
     const SideValues<N> none(problem_.side_count());
-    const Iteration more = solve_rows(problem_, rows_, none, correction, change, work_);
+    SideValues<N> change(problem_.side_count());
+    const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
     result_.iteration.iterations += more.iterations;
+    change = smoothed(problem_, neighbours_, change);
     for (const SideIndex i : problem_.sides.active) {
       const bool coupled = problem_.sides.coupled[i / 2] != 0;
       Spectrum<N>& own = coupled ? g.indirect.body[i] : g.indirect.plain[i];
       // Light cannot be negative; where the correction's noise says so, the pooled value stays.
-      const Spectrum<N> better = g.bounced[i] + change[i];
+      const Spectrum<N> better = own + change[i];
       if (better.min() < 0.0f) continue;
       if (coupled)
         for (int lane = 0; lane < N; ++lane)
@@ -188,27 +253,27 @@ class RowSolver {
     }
   }
 
-  /// Share of the fresh rays in the estimate of row k. Rows do not sample hot patches: beside rays
-  /// that do they count for nothing.
+  /// Share of the fresh rays in the estimate of row k.
   [[nodiscard]] float fresh_share(std::size_t k) const {
     const float fresh = static_cast<float>(gathered_.valid(problem_.sides.active[k]));
-    if (fresh == 0.0f) return 0.0f;
-    if (!hot_.empty()) return 1.0f;
-    return fresh / (static_cast<float>(rows_.rays[k]) + fresh);
+    return fresh > 0.0f ? fresh / (static_cast<float>(rows_.rays[k]) + fresh) : 0.0f;
   }
 
-  /// Stores the pooled estimate of side k and returns how it differs from the rows' solution.
-  Spectrum<N> pool(std::size_t k, std::size_t group, const SideValues<N>& b) {
+  /// The pooled estimate of side k.
+  void pool(std::size_t k, std::size_t group, const SideValues<N>& b) {
     const SideIndex i = problem_.sides.active[k];
     GroupLight<N>& g = groups_[group];
     const float fresh = fresh_share(k);
     const float share =
         rows_.rays[k] > 0 ? (1.0f - fresh) / static_cast<float>(rows_.rays[k]) : 0.0f;
-    g.indirect.plain[i] = share * rows_.apply(k, b, false) + fresh * gathered_.mean(i, group);
-    if (problem_.sides.coupled[i / 2] != 0)
-      g.indirect.body[i] =
-          share * rows_.apply(k, b, true) + fresh * gathered_.mean_body(i, group);
-    return exchange(problem_, g.indirect, i) - g.bounced[i];
+    const auto estimate = [&](bool body) {
+      const Spectrum<N> gathered =
+          body ? gathered_.mean_body(i, group) : gathered_.mean(i, group);
+      return share * (rows_.apply(k, b, body) + rows_.hot_sum(k, group, body)) +
+             fresh * gathered + shot_light(i, group, body);
+    };
+    g.indirect.plain[i] = estimate(false);
+    if (problem_.sides.coupled[i / 2] != 0) g.indirect.body[i] = estimate(true);
   }
 
   void sum_groups() {
@@ -231,19 +296,31 @@ class RowSolver {
         sample_variance(problem_, neighbours_, direct_, Samples::All);
     const std::vector<double> fresh =
         sample_variance(problem_, neighbours_, gathered_, Samples::All);
+    const std::vector<double> shot = sample_variance(problem_, neighbours_, shot_, Samples::All);
     std::vector<double> total(problem_.side_count(), 0.0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
-      const double factor = static_cast<double>(exposure_factor(i));
+      const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
       const double n = direct_.valid(i);
       result_.direct.variance[i] =
-          static_cast<float>(n > 0.0 ? factor * factor * direct[i] / n : 0.0);
-      result_.caustic.variance[i] = static_cast<float>(factor * factor) * caustic_variance(i);
-      result_.indirect.variance[i] = static_cast<float>(indirect_variance(k, fresh[i]));
+          static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
+      result_.caustic.variance[i] = exposed * exposed * caustic_variance(i);
+      const double shots = shot_.valid(i);
+      result_.indirect.variance[i] =
+          static_cast<float>(indirect_variance(k, fresh[i]) +
+                             (shots > 0.0 ? shot[i] / shots : 0.0));
       total[i] = static_cast<double>(result_.direct.variance[i]) +
                  static_cast<double>(result_.caustic.variance[i]) +
                  static_cast<double>(result_.indirect.variance[i]);
     }
+    const double common = hot_flux_variance();
+    if (common > 0.0)
+      for (const SideIndex i : problem_.sides.active) {
+        double first = 0.0;
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+          first += static_cast<double>(shot_.mean(i, g).mean());
+        result_.indirect.variance[i] += static_cast<float>(common * first * first);
+      }
     // The errors of what a side sees reach it too, as far as they do not average out.
     std::vector<double> leaving_variance(problem_.side_count(), 0.0);
     for (const SideIndex i : problem_.sides.active) {
@@ -256,7 +333,7 @@ class RowSolver {
           static_cast<float>(rows_.apply_squared(k, leaving_variance));
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    weights_ = error_weights(problem_, neighbours_, irradiance);
+    weights_ = error_weights(problem_, irradiance);
     result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
                                        weighted(result_.caustic.variance) +
                                        weighted(result_.indirect.variance));
@@ -317,12 +394,15 @@ class RowSolver {
           {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
            kShadowRayCost},
           {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours),
-           1.0}};
+           1.0},
+          {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
+           kShadowRayCost}};
       const auto plans = plan_samples(problem_, weights_, strata, rest);
-      if (plans[0].empty() && plans[1].empty() && !(fixed > 0.5 * target * target)) return;
+      if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
       work_.begin("direct light", 0.98);
       draw_direct(plans[0]);
       take_direct();
+      draw_hot(plans[2]);
       solve_bounces();
       work_.begin("gathering", 0.98);
       draw_gather(plans[1]);
@@ -345,11 +425,14 @@ class RowSolver {
   Solution<N> result_;
   Neighbours neighbours_;
   std::vector<GroupLight<N>> groups_;
-  Tally<N> direct_, gathered_;
+  Tally<N> direct_;    ///< lights
+  Tally<N> shot_;      ///< first light of hot patches
+  Tally<N> gathered_;  ///< everything else that diffuse surfaces reflect
   Photons<N> photons_;
   Rows<N> rows_;
   HotPatches<N> hot_;
   std::vector<float> exposed_;   ///< by side: share of its area outside closed bodies
+  std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
   std::vector<double> weights_;  ///< of squared errors, by side
 };
 

@@ -72,6 +72,15 @@ class Tally {
         replicate_[at][r] += sums.groups[g].replicate[r];
     }
   }
+  void forget(SideIndex i) {
+    drawn_[i] = 0;
+    valid_[i].fill(0);
+    for (std::size_t g = 0; g < groups_; ++g) {
+      plain_[g * sides_ + i] = {};
+      if (!body_.empty()) body_[g * sides_ + i] = {};
+      replicate_[g * sides_ + i].fill(0.0f);
+    }
+  }
   /// Takes over what another tally knows of a side.
   void copy(SideIndex i, const Tally& from, SideIndex j) {
     drawn_[i] = from.drawn_[j];

@@ -22,7 +22,7 @@ struct Box {
   Work work{control, 0.0};
   scene::Counters counters;
   Rows<1> rows() {
-    return trace_rows<1>(problem, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1), 0,
+    return trace_rows<1>(problem, {}, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1), 0,
                          32, work, counters);
   }
 };
@@ -88,9 +88,9 @@ TEST(Rows, EnclosureThatReflectsEverythingIsRefused) {
 TEST(Rows, RoundsAddUp) {
   Box box{closed_box(0.5)};
   const std::vector<std::uint8_t> all(box.problem.sides.active.size(), 1);
-  Rows<1> half = trace_rows<1>(box.problem, {}, all, 0, 16, box.work, box.counters);
+  Rows<1> half = trace_rows<1>(box.problem, {}, {}, all, 0, 16, box.work, box.counters);
   const Rows<1> both =
-      trace_rows<1>(box.problem, std::move(half), all, 16, 32, box.work, box.counters);
+      trace_rows<1>(box.problem, {}, std::move(half), all, 16, 32, box.work, box.counters);
   const Rows<1> once = box.rows();
   ASSERT_EQ(both.entries.size(), once.entries.size());
   for (std::size_t e = 0; e < once.entries.size(); ++e) {
