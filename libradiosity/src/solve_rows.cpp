@@ -102,11 +102,16 @@ class RowSolver {
   /// An error in the light of hot patches is one error of everything they light, so they get many
   /// more light samples than others before it is used.
   void know_hot_light() {
-    constexpr int kSamples = 256;
+    constexpr int kFirst = 256;
+    constexpr int kMost = 65536;
     if (hot_.empty()) return;
-    draw_direct(same_for_all(hot_.sides(), kSamples));
-    take_direct();
-    hot_.set_source(sources());
+    const double allowed = by_error() ? std::pow(0.25 * problem_.options.error, 2) : 1.0;
+    for (int samples = kFirst; samples <= kMost && !work_.stopped(); samples *= 2) {
+      draw_direct(same_for_all(hot_.sides(), samples));
+      take_direct();
+      hot_.set_source(sources());
+      if (hot_flux_variance() <= allowed) return;
+    }
   }
 
   /// Relative variance of the whole flux that hot patches reflect first.
