@@ -23,7 +23,7 @@ double area_of(const Elements& e) {
 void expect_lookup_agrees(const Scene& scene, const Elements& e) {
   for (std::uint32_t i = 0; i < e.layout.element_count(); ++i)
     for (std::uint32_t p = e.first_piece[i]; p < e.first_piece[i + 1]; ++p) {
-      const ElementPiece& piece = e.pieces[p];
+      const ElementPiece piece = e.pieces[p];
       Vec3f centre = Vec3f::Zero();
       for (const Vec3f& c : piece.corners) centre += c;
       centre /= static_cast<float>(piece.corners.size());
