@@ -96,7 +96,7 @@ struct SurfaceField {
   /// outermost centres the value is constant. Across a change of level there is a step of second
   /// order.
   struct Stencil {
-    static constexpr int kCapacity = 48;
+    static constexpr int kCapacity = 64;  ///< what does not fit is left out
     int count = 0;
     std::uint32_t element[kCapacity];
     float weight[kCapacity];
