@@ -18,7 +18,8 @@ using atrium::scene::SurfaceField;
 using atrium::scene::write_solution;
 using atrium::test::TempFolder;
 
-/// Two facets of 2x1 cells, three elements (one cell is empty), three lanes.
+/// Two facets of 2x1 cells, three elements, three lanes. One cell is empty, one has a single
+/// occupied child.
 Solution sample_solution() {
   Solution s;
   s.scene_hash = 0x0123456789abcdefULL;
@@ -36,10 +37,13 @@ Solution sample_solution() {
     f.facets[i].ny = 1;
     f.facets[i].first_cell = 2 * i;
   }
-  f.cell_element = {0, 1, 2, SurfaceField::kNone};
+  constexpr std::uint32_t kNone = SurfaceField::kNone;
+  f.nodes = {0, 1, SurfaceField::kInner | 4U, kNone, kNone, 2, kNone, kNone};
   f.triangle_facet = {0, 1, SurfaceField::kNone};
   f.element_facet = {0, 0, 1};
-  f.element_cell = {0, 1, 0};
+  f.element_level = {0, 0, 1};
+  f.element_x = {0, 1, 1};
+  f.element_y = {0, 0, 0};
   f.element_area = {1.0f, 0.5f, 0.25f};
   for (int i = 0; i < 18; ++i) f.irradiance.direct.push_back(static_cast<float>(i));
   f.irradiance.indirect.assign(18, 7.0f);
@@ -62,7 +66,8 @@ TEST(SolutionIo, RoundTrip) {
   EXPECT_EQ(a.basis, b.basis);
   EXPECT_EQ(a.options, b.options);
   EXPECT_EQ(a.field.unit, b.field.unit);
-  EXPECT_EQ(a.field.cell_element, b.field.cell_element);
+  EXPECT_EQ(a.field.nodes, b.field.nodes);
+  EXPECT_EQ(a.field.element_level, b.field.element_level);
   EXPECT_EQ(a.field.irradiance.direct, b.field.irradiance.direct);
   EXPECT_TRUE(b.field.irradiance.caustic.empty());
   EXPECT_EQ(a.field.valid, b.field.valid);
@@ -103,9 +108,17 @@ TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
     write_solution(s, folder / "a.atrium");
     EXPECT_THROW((void)read_solution(folder / "a.atrium"), Error);
   };
-  refused([](SurfaceField& f) { f.cell_element[0] = 3; });
+  refused([](SurfaceField& f) { f.nodes[0] = 3; });
+  refused([](SurfaceField& f) { f.nodes[2] = SurfaceField::kInner | 5U; });  // past the end
+  refused([](SurfaceField& f) { f.nodes[5] = SurfaceField::kInner | 4U; });  // backwards
+  refused([](SurfaceField& f) { f.nodes[3] = SurfaceField::kInner | 4U; });  // two parents
+  refused([](SurfaceField& f) { f.element_level[2] = 0; });                  // not where it is
+  refused([](SurfaceField& f) { f.element_level[2] = 13; });
+  refused([](SurfaceField& f) { f.element_x[1] = 2; });
+  refused([](SurfaceField& f) { f.element_facet[0] = 7; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
-  refused([](SurfaceField& f) { f.facets[1].first_cell = 3; });
+  refused([](SurfaceField& f) { f.facets[1].first_cell = 7; });
+  refused([](SurfaceField& f) { f.facets[1].nx = 0; });
   refused([](SurfaceField& f) { f.irradiance.direct.pop_back(); });
   refused([](SurfaceField& f) { f.lanes = 5; });
 }
