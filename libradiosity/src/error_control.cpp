@@ -7,21 +7,10 @@ namespace atrium::radiosity {
 using scene::SurfaceField;
 
 Neighbours::Neighbours(const SurfaceField& layout) {
-  std::vector<std::uint32_t> near;
   first_.push_back(0);
-  for (std::uint32_t e = 0; e < layout.element_count(); ++e) {
-    const SurfaceField::Facet& f = layout.facets[layout.element_facet[e]];
-    const std::uint32_t x = layout.element_cell[e] % f.nx;
-    const std::uint32_t y = layout.element_cell[e] / f.nx;
-    const auto visit = [&](bool inside, std::uint32_t cell) {
-      if (!inside) return;
-      const std::uint32_t n = layout.cell_element[f.first_cell + cell];
+  for (const EdgeNeighbours& edges : edge_neighbours(layout)) {
+    for (const std::uint32_t n : edges)
       if (n != SurfaceField::kNone) element_.push_back(n);
-    };
-    visit(x > 0, layout.element_cell[e] - 1);
-    visit(x + 1 < f.nx, layout.element_cell[e] + 1);
-    visit(y > 0, layout.element_cell[e] - f.nx);
-    visit(y + 1 < f.ny, layout.element_cell[e] + f.nx);
     first_.push_back(static_cast<std::uint32_t>(element_.size()));
   }
 }

@@ -173,6 +173,13 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
       points(shading_in.scene(), elements_in),
       specular(specular_scene(shading_in.scene())) {
   const std::size_t n = side_count();
+  // By place, not by number: what is known of an element stays when others are divided.
+  for (SideIndex i = 0; i < n; ++i) {
+    const std::uint64_t key = element_key(elements.layout, i / 2);
+    streams_.push_back(scene::hash_combine(
+        scene::hash_combine(static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key)),
+        i & 1U));
+  }
   sides.is_active.assign(n, 0);
   sides.reflectance.assign(n, {});
   sides.transmittance.assign(n, {});

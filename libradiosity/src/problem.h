@@ -62,9 +62,12 @@ struct Problem {
   [[nodiscard]] std::size_t side_count() const { return elements.layout.element_count() * 2; }
   [[nodiscard]] float area(SideIndex i) const { return elements.layout.element_area[i / 2]; }
   /// Number of a side's own random sequence.
-  [[nodiscard]] std::uint32_t stream(SideIndex i) const { return i; }
+  [[nodiscard]] std::uint32_t stream(SideIndex i) const { return streams_[i]; }
   /// The active side that a hit belongs to, or kNoSide.
   [[nodiscard]] SideIndex side_at(const scene::SurfacePoint& point, scene::Side side) const;
+
+ private:
+  std::vector<std::uint32_t> streams_;
 };
 
 /// A function of the active sides, by SideIndex; empty vectors read as "not computed".

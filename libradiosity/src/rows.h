@@ -67,19 +67,6 @@ template <int N>
                                  const std::vector<std::uint8_t>& wanted, int first_ray,
                                  int last_ray, Work& work, scene::Counters& counters);
 
-struct Iteration {
-  int iterations = 0;
-  double residual = 0.0;  ///< last change of radiosity, relative to its maximum
-  bool converged = false;
-};
-
-/// Solves I = constant + W (rho (source + I) + tau (source + I)_other side) for the exchange
-/// irradiance I of the active sides (E_B where coupled). `result` is the start value.
-/// \throws Error  if the light does not decay: a closed enclosure that reflects everything.
-template <int N>
-Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideValues<N>& source,
-                     const SideValues<N>& constant, SideValues<N>& result, Work& work);
-
 /// Radiosity that leaves each side given the exchange irradiance of all.
 template <int N>
 [[nodiscard]] Spectrum<N> leaving(const Sides<N>& sides, SideIndex i, const Spectrum<N>& own,

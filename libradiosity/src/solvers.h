@@ -1,5 +1,6 @@
 #pragma once
 
+#include "iterate.h"
 #include "passes.h"
 
 namespace atrium::radiosity {

@@ -4,7 +4,6 @@
 
 #include "follow.h"
 #include "hemisphere.h"
-#include "material/error.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -57,7 +56,7 @@ class RowTracer {
   void trace(std::size_t k, Chunk<N>& chunk, Counters& counters) {
     const SideIndex i = problem_.sides.active[k];
     for (int ray = first_; ray < last_; ++ray) {
-      scene::Sampler sampler(problem_.options.seed, i, static_cast<std::uint32_t>(ray));
+      scene::Sampler sampler(problem_.options.seed, problem_.stream(i), static_cast<std::uint32_t>(ray));
       const HemisphereRay<N> start(problem_, i, sampler);
       const PathEnd<N> end = follow<N>(
           problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
@@ -185,173 +184,9 @@ Rows<N> trace_rows(const Problem<N>& problem, const HotPatches<N>& hot, Rows<N> 
   return rows;
 }
 
-namespace {
-
-/// Gauss-Seidel over interleaved groups: within a group all sides are updated at once from values
-/// that no thread changes, groups follow each other. So threads do not matter.
-template <int N>
-class Sweeper {
- public:
-  Sweeper(const Problem<N>& problem, const Rows<N>& rows, const SideValues<N>& source,
-          const SideValues<N>& constant, SideValues<N>& result)
-      : problem_(problem),
-        rows_(rows),
-        source_(source),
-        constant_(constant),
-        result_(result),
-        radiosity_(problem.side_count()),
-        fresh_(rows.size()) {
-    for (const SideIndex i : problem.sides.active) radiosity_[i] = leaving_side(i);
-  }
-
-  /// \return  the largest change of radiosity.
-  float sweep() {
-    float change = 0.0f;
-    for (std::size_t group = 0; group < kGroups; ++group) change = std::max(change, update(group));
-    return change;
-  }
-  [[nodiscard]] float largest() const {
-    float m = 0.0f;
-    for (const SideIndex i : problem_.sides.active)
-      for (int lane = 0; lane < N; ++lane) m = std::max(m, std::abs(radiosity_[i][lane]));
-    return m;
-  }
-
-  /// Growth of the diffuse flux since the last call, relative to it.
-  double flux_growth() {
-    double flux = 0.0;
-    for (const SideIndex i : problem_.sides.active)
-      flux += static_cast<double>(radiosity_[i].mean()) * static_cast<double>(problem_.area(i));
-    const double growth = flux > 0.0 ? (flux - flux_) / flux : 0.0;
-    flux_ = flux;
-    return growth;
-  }
-
- private:
-  static constexpr std::size_t kGroups = 8, kBlock = 64;
-
-  float update(std::size_t group) {
-    const std::size_t blocks = (rows_.size() + kBlock - 1) / kBlock;
-    const std::size_t mine = blocks > group ? (blocks - group + kGroups - 1) / kGroups : 0;
-    scene::parallel_for(mine, 16, [&](std::size_t begin, std::size_t end) {
-      for_sides(group, begin, end, [&](std::size_t k) { fresh_[k] = row_value(k); });
-    });
-    for_sides(group, 0, mine,
-              [&](std::size_t k) { result_[problem_.sides.active[k]] = fresh_[k]; });
-    std::vector<float> changes((mine + 15) / 16, 0.0f);
-    scene::parallel_for(mine, 16, [&](std::size_t begin, std::size_t end) {
-      for_sides(group, begin, end, [&](std::size_t k) {
-        changes[begin / 16] = std::max(changes[begin / 16], renew(problem_.sides.active[k]));
-      });
-    });
-    float change = 0.0f;
-    for (const float c : changes) change = std::max(change, c);
-    return change;
-  }
-
-  template <class F>
-  void for_sides(std::size_t group, std::size_t begin, std::size_t end, F&& f) const {
-    for (std::size_t b = begin; b < end; ++b) {
-      const std::size_t first = (b * kGroups + group) * kBlock;
-      for (std::size_t k = first; k < std::min(first + kBlock, rows_.size()); ++k) f(k);
-    }
-  }
-
-  Spectrum<N> row_value(std::size_t k) const {
-    const SideIndex i = problem_.sides.active[k];
-    if (rows_.rays[k] == 0) return constant_[i];
-    const Spectrum<N> sum = rows_.apply(k, radiosity_, problem_.sides.coupled[i / 2] != 0);
-    return constant_[i] + sum / static_cast<float>(rows_.rays[k]);
-  }
-
-  Spectrum<N> leaving_side(SideIndex i) const {
-    const SideIndex o = i ^ 1U;
-    return leaving(problem_.sides, i, source_[i] + result_[i], source_[o] + result_[o]);
-  }
-
-  /// Both sides of an element belong to one block or to neighbours in order; the other side's
-  /// radiosity follows in its own update unless light passes through.
-  float renew(SideIndex i) {
-    const Spectrum<N> next = leaving_side(i);
-    float change = 0.0f;
-    for (int lane = 0; lane < N; ++lane)
-      change = std::max(change, std::abs(next[lane] - radiosity_[i][lane]));
-    radiosity_[i] = next;
-    return change;
-  }
-
-  const Problem<N>& problem_;
-  const Rows<N>& rows_;
-  const SideValues<N>& source_;
-  const SideValues<N>& constant_;
-  SideValues<N>& result_;
-  SideValues<N> radiosity_;
-  SideValues<N> fresh_;
-  double flux_ = 0.0;
-};
-
-/// Over 50 sweeps even a reflectance of 0.9999 takes half a per cent off the changes.
-bool does_not_decay(const std::vector<double>& changes) {
-  constexpr std::size_t kWindow = 50;
-  return changes.size() > kWindow + 10 &&
-         changes.back() > (1.0 - 1e-3) * changes[changes.size() - 1 - kWindow];
-}
-
-}  // namespace
-
-template <int N>
-Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideValues<N>& source,
-                     const SideValues<N>& constant, SideValues<N>& result, Work& work) {
-  Iteration state;
-  Sweeper<N> sweeper(problem, rows, source, constant, result);
-  float before = 0.0f;
-  std::vector<double> changes;
-  bool trapped = false;
-  while (state.iterations < problem.options.max_iterations && !work.stopped()) {
-    const float change = sweeper.sweep();
-    const float largest = sweeper.largest();
-    ++state.iterations;
-    state.residual = largest > 0.0f ? static_cast<double>(change / largest) : 0.0;
-    if (change == 0.0f) {
-      state.converged = true;
-      break;
-    }
-    const double decay = before > 0.0f ? static_cast<double>(change / before) : 0.0;
-    before = change;
-    // What is still missing is the geometric series of the changes to come.
-    const double missing =
-        decay < 1.0 ? state.residual * std::max(1.0, decay / (1.0 - decay)) : 1.0;
-    if (state.iterations > 1 && missing <= problem.options.tolerance) {
-      state.converged = true;
-      break;
-    }
-    changes.push_back(static_cast<double>(change));
-    if (!does_not_decay(changes)) continue;
-    // Light is trapped. In a crevice whose few rays all met white walls it is no more than noise of
-    // the rows, and the rest of the solution stands; in an enclosure there is none.
-    if (!trapped) {  // the first look has nothing to compare with
-      trapped = true;
-      (void)sweeper.flux_growth();
-      continue;
-    }
-    const double growth = sweeper.flux_growth();
-    if (growth <= problem.options.tolerance) {
-      state.converged = true;
-      break;
-    }
-    if (growth > 1e-3)
-      throw Error(
-          "radiosity: a closed enclosure reflects all light (reflectance 1), there is no finite "
-          "solution");
-  }
-  return state;
-}
-
 #define ATRIUM_INSTANTIATE(N)                                                                    \
-  template Rows<N> trace_rows(const Problem<N>&, const HotPatches<N>&, Rows<N>, const std::vector<std::uint8_t>&, int, \
-                              int, Work&, Counters&);                                            \
-  template Iteration solve_rows(const Problem<N>&, const Rows<N>&, const SideValues<N>&,         \
-                                const SideValues<N>&, SideValues<N>&, Work&);
+  template Rows<N> trace_rows(const Problem<N>&, const HotPatches<N>&, Rows<N>,                  \
+                              const std::vector<std::uint8_t>&, int, int, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)
