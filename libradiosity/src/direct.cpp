@@ -83,7 +83,7 @@ template <int N>
 Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
                          Counters& counters) {
   Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-  sample_direct(problem, which, {}, same_for_all(problem.sides.active, samples), tally, work,
+  sample_direct(problem, which, {}, top_up(problem, tally, problem.sides.active, samples), tally, work,
                 counters);
   return estimate_of(tally, problem);
 }

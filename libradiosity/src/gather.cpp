@@ -77,7 +77,9 @@ class HotSampler {
     const Vec3f wi = d.normalized();
     const float receiver_cosine = wi.dot(normal);
     const float sender_cosine = -wi.dot(facing);
-    if (!(receiver_cosine > 0.0f) || !(sender_cosine > 0.0f)) return true;
+    // What rounding alone lifts out of the other's plane exchanges nothing.
+    const float least = 2.0f * (from.error + to.error) / d.norm();
+    if (!(receiver_cosine > least) || !(sender_cosine > least)) return true;
     const Spectrum<N> seen =
         problem_.shading.transmittance(segment(from, to), counters, Counter::RaysRow);
     if (seen.is_zero()) return true;

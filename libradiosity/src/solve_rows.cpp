@@ -22,14 +22,16 @@ struct GroupLight {
 template <int N>
 class RowSolver {
  public:
-  RowSolver(const Problem<N>& problem, Work& work, Counters& counters)
+  RowSolver(const Problem<N>& problem, Tally<N> direct, Work& work, Counters& counters)
       : problem_(problem),
         work_(work),
         counters_(counters),
         result_(problem),
         neighbours_(problem.elements.layout),
         groups_(problem.group_count()),
-        direct_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
+        direct_(direct.groups() > 0 ? std::move(direct)
+                                    : Tally<N>(problem.side_count(), problem.group_count(),
+                                               problem.sides.any_coupled)),
         shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         exposed_(problem.side_count(), 1.0f),
@@ -37,13 +39,13 @@ class RowSolver {
 
   Solution<N> solve() {
     work_.begin("direct light", 0.15);
-    draw_direct(same_for_all(problem_.sides.active,
-                             by_error() ? kPilot : problem_.options.direct_samples));
+    draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
     work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
     photons_ = trace_photons(problem_, work_, counters_);
     build_rows();
     work_.begin("gathering", 0.98);
-    draw_gather(same_for_all(lit_sides(), by_error() ? kPilot : problem_.options.gather_rays));
+    draw_gather(top_up(problem_, gathered_, lit_sides(),
+                       by_error() ? kPilot : problem_.options.gather_rays));
     assemble();
     if (by_error()) reach_error();
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
@@ -58,6 +60,9 @@ class RowSolver {
     return all;
   }
 
+  void draw_direct(const std::vector<SideIndex>& sides, int samples) {
+    draw_direct(top_up(problem_, direct_, sides, samples));
+  }
   void draw_direct(const std::vector<Draw>& plan) {
     sample_direct(problem_, DirectLights::All, mixed_, plan, direct_, work_, counters_);
   }
@@ -89,13 +94,19 @@ class RowSolver {
     find_buried();
     draw_direct_of_mixed();
     take_direct();
-    draw_hot(same_for_all(problem_.sides.active, kPilot));
+    draw_hot(top_up(problem_, shot_, problem_.sides.active, kPilot));
     solve_bounces();
     if (first == all) return;
-    std::vector<std::uint8_t> lit(n, 0);
-    for (std::size_t k = 0; k < n; ++k) lit[k] = is_lit(problem_.sides.active[k]) ? 1 : 0;
     work_.begin("rows", 0.6);
-    rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), lit, first, all, work_, counters_);
+    for (int from = first, to = 2 * first; from < all; from = to, to *= 2) {
+      to = std::min(to, all);
+      std::vector<std::uint8_t> wanted(n, 0);
+      for (std::size_t k = 0; k < n; ++k) {
+        const SideIndex i = problem_.sides.active[k];
+        wanted[k] = is_lit(i) && samples_at_level(all, problem_.level(i)) >= to ? 1 : 0;
+      }
+      rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
+    }
     solve_bounces();
   }
 
@@ -107,7 +118,10 @@ class RowSolver {
     if (hot_.empty()) return;
     const double allowed = by_error() ? std::pow(0.25 * problem_.options.error, 2) : 1.0;
     for (int samples = kFirst; samples <= kMost && !work_.stopped(); samples *= 2) {
-      draw_direct(same_for_all(hot_.sides(), samples));
+      std::vector<Draw> plan;
+      for (const SideIndex i : hot_.sides())
+        plan.push_back({i, static_cast<std::uint32_t>(samples / kReplicates)});
+      draw_direct(plan);
       take_direct();
       hot_.set_source(sources());
       if (hot_flux_variance() <= allowed) return;
@@ -161,7 +175,7 @@ class RowSolver {
       mixed_[i] = 1;
       direct_.forget(i);
     }
-    draw_direct(same_for_all(again, by_error() ? kPilot : problem_.options.direct_samples));
+    draw_direct(again, by_error() ? kPilot : problem_.options.direct_samples);
   }
 
   /// What the lights' samples say so far becomes the source of every group.
@@ -444,12 +458,13 @@ class RowSolver {
 }  // namespace
 
 template <int N>
-Solution<N> solve_with_rows(const Problem<N>& problem, Work& work, Counters& counters) {
-  return RowSolver<N>(problem, work, counters).solve();
+Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
+                            Counters& counters) {
+  return RowSolver<N>(problem, std::move(direct), work, counters).solve();
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Solution<N> solve_with_rows(const Problem<N>&, Work&, Counters&);
+  template Solution<N> solve_with_rows(const Problem<N>&, Tally<N>, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -179,14 +179,18 @@ bool draw_samples(const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
   return seed ^ (purpose << 32) ^ (static_cast<std::uint64_t>(replicate + 1) << 56);
 }
 
-/// The same number for every side; per side a multiple of kReplicates.
-[[nodiscard]] inline std::vector<Draw> same_for_all(const std::vector<SideIndex>& sides,
-                                                    int samples) {
-  const auto more = static_cast<std::uint32_t>((std::max(1, samples) + kReplicates - 1) /
-                                               kReplicates);
+/// What is missing to `samples` of every side, in fours. Parts of a divided element need half as
+/// many at each level, for their errors count by their area.
+template <int N>
+[[nodiscard]] std::vector<Draw> top_up(const Problem<N>& problem, const Tally<N>& tally,
+                                       const std::vector<SideIndex>& sides, int samples) {
   std::vector<Draw> plan;
   plan.reserve(sides.size());
-  for (const SideIndex i : sides) plan.push_back({i, more});
+  for (const SideIndex i : sides) {
+    const auto wanted = static_cast<std::uint32_t>(
+        (samples_at_level(samples, problem.level(i)) + kReplicates - 1) / kReplicates);
+    if (wanted > tally.drawn(i)) plan.push_back({i, wanted - tally.drawn(i)});
+  }
   return plan;
 }
 
