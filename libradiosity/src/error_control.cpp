@@ -32,16 +32,29 @@ double local_mean(const Neighbours& neighbours, SideIndex i, Value&& value) {
 }  // namespace
 
 template <int N>
-SideValues<N> smoothed(const Problem<N>& problem, const Neighbours& neighbours,
-                       const SideValues<N>& values) {
-  SideValues<N> result(values.size());
-  for (const SideIndex i : problem.sides.active) {
-    Spectrum<N> sum = problem.area(i) * values[i];
-    float area = problem.area(i);
+Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
+                        const SideValues<N>& guide, const std::vector<double>& variance)
+    : problem_(&problem), neighbours_(&neighbours) {
+  for (const SideIndex i : problem.sides.active)
     neighbours.visit(i, [&](SideIndex j) {
-      if (problem.sides.is_active[j] == 0) return;
-      sum += problem.area(j) * values[j];
-      area += problem.area(j);
+      const double d = static_cast<double>(guide[i].mean()) - static_cast<double>(guide[j].mean());
+      const double v = variance[i] + variance[j];
+      const bool takes_part = problem.sides.is_active[j] != 0 && v > 0.0;
+      weight_.push_back(takes_part ? static_cast<float>(v / (v + d * d)) : 0.0f);
+    });
+}
+
+template <int N>
+SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
+  SideValues<N> result(values.size());
+  std::size_t at = 0;
+  for (const SideIndex i : problem_->sides.active) {
+    Spectrum<N> sum = problem_->area(i) * values[i];
+    float area = problem_->area(i);
+    neighbours_->visit(i, [&](SideIndex j) {
+      const float a = weight_[at++] * problem_->area(j);
+      sum += a * values[j];
+      area += a;
     });
     result[i] = sum / area;
   }
@@ -133,7 +146,7 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                                    \
-  template SideValues<N> smoothed(const Problem<N>&, const Neighbours&, const SideValues<N>&);   \
+  template class Smoothing<N>;                                                                   \
   template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&);            \
   template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
                                                const Tally<N>&, Samples);                        \

@@ -21,11 +21,22 @@ class Neighbours {
   std::vector<std::uint32_t> first_, element_;
 };
 
-/// Area mean over every side and its neighbours: takes most noise off a smooth field and keeps
-/// its flux nearly.
+/// Weights of a smoothing over every side and its neighbours that takes noise off a field and
+/// leaves what is more than noise: a neighbour counts less the more standard errors its value is
+/// away, so more samples mean less smoothing.
 template <int N>
-[[nodiscard]] SideValues<N> smoothed(const Problem<N>& problem, const Neighbours& neighbours,
-                                     const SideValues<N>& values);
+class Smoothing {
+ public:
+  /// \param guide  noisy values by side. \param variance  of their lane means.
+  Smoothing(const Problem<N>& problem, const Neighbours& neighbours, const SideValues<N>& guide,
+            const std::vector<double>& variance);
+  [[nodiscard]] SideValues<N> operator()(const SideValues<N>& values) const;
+
+ private:
+  const Problem<N>* problem_;
+  const Neighbours* neighbours_;
+  std::vector<float> weight_;  ///< in the order that Neighbours visits active sides
+};
 
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
 /// floor of 1 % of the mean. The RMS over these is "the error" (docs/radiosity.md, Eq. 9).

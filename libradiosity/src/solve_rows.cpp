@@ -15,8 +15,11 @@ struct GroupLight {
   Irradiance<N> direct, caustic, indirect;
   std::vector<float> variance;  ///< of their sum, sampling of this group only
   SideValues<N> source;         ///< exchange irradiance from lights
-  SideValues<N> bounced;        ///< exchange irradiance of the rows' solution
-  SideValues<N> seen;           ///< ... smoothed: what fresh rays read
+  SideValues<N> bounced;        ///< exchange irradiance of the rows' solution, later a better one
+  bool refined = false;         ///< is it better?
+  SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
+  std::optional<Smoothing<N>> smoothing;  ///< by the noise of the rows
+  SideValues<N> seen;                     ///< bounced, smoothed: what fresh rays read
 };
 
 template <int N>
@@ -199,6 +202,8 @@ class RowSolver {
     }
   }
 
+  /// The rows' answer to the sources; later only what their changes add to the field that samples
+  /// made better in between.
   void solve_bounces() {
     Iteration slowest;
     for (std::size_t n = 0; n < groups_.size(); ++n) {
@@ -211,14 +216,52 @@ class RowSolver {
         if (rows_.rays[k] > 0)
           shot[i] += rows_.hot_sum(k, n, body) / static_cast<float>(rows_.rays[k]);
       }
-      g.bounced.resize(problem_.side_count());
-      const Iteration it =
-          solve_rows(problem_, rows_, hot_.without_hot(g.source), shot, g.bounced, work_);
-      if (it.iterations >= slowest.iterations) slowest = it;
-      g.seen = smoothed(problem_, neighbours_, g.bounced);
+      const SideValues<N> source = hot_.without_hot(g.source);
+      if (!g.refined) {
+        g.bounced.resize(problem_.side_count());
+        const Iteration it = solve_rows(problem_, rows_, source, shot, g.bounced, work_);
+        if (it.iterations >= slowest.iterations) slowest = it;
+        smooth(g, row_variances(g));
+      } else {
+        SideValues<N> change(problem_.side_count());
+        const Iteration it = solve_rows(problem_, rows_, minus(source, g.solved_source),
+                                        minus(shot, g.solved_shot), change, work_);
+        if (it.iterations >= slowest.iterations) slowest = it;
+        change = (*g.smoothing)(change);
+        for (const SideIndex i : problem_.sides.active) {
+          g.bounced[i] += change[i];
+          g.seen[i] += change[i];
+        }
+      }
+      g.solved_source = source;
+      g.solved_shot = std::move(shot);
     }
     slowest.iterations += result_.iteration.iterations;
     result_.iteration = slowest;
+  }
+
+  void smooth(GroupLight<N>& g, const std::vector<double>& variance) const {
+    g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, variance);
+    g.seen = (*g.smoothing)(g.bounced);
+  }
+
+  /// What samples found is a better field than the rows' for the next samples to read. Those that
+  /// go on are drawn anew against it.
+  void refine_field(const std::vector<Draw>& plan) {
+    const std::vector<double> variance(result_.indirect.variance.begin(),
+                                       result_.indirect.variance.end());
+    for (GroupLight<N>& g : groups_) {
+      for (const SideIndex i : problem_.sides.active)
+        g.bounced[i] = exchange(problem_, g.indirect, i);
+      smooth(g, variance);
+      g.refined = true;
+    }
+    for (const Draw& d : plan) gathered_.drop_sums(d.side);
+  }
+
+  SideValues<N> minus(SideValues<N> a, const SideValues<N>& b) const {
+    for (const SideIndex i : problem_.sides.active) a[i] -= b[i];
+    return a;
   }
 
   /// First light of hot patches as far as samples of them found it.
@@ -252,13 +295,13 @@ class RowSolver {
     SideValues<N> difference(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       difference[i] = exchange(problem_, g.indirect, i);
-    difference = smoothed(problem_, neighbours_, difference);
+    difference = (*g.smoothing)(difference);
     for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
     const SideValues<N> none(problem_.side_count());
     SideValues<N> change(problem_.side_count());
     const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
     result_.iteration.iterations += more.iterations;
-    change = smoothed(problem_, neighbours_, change);
+    change = (*g.smoothing)(change);
     for (const SideIndex i : problem_.sides.active) {
       const bool coupled = problem_.sides.coupled[i / 2] != 0;
       Spectrum<N>& own = coupled ? g.indirect.body[i] : g.indirect.plain[i];
@@ -374,6 +417,15 @@ class RowSolver {
     return sum;
   }
 
+  [[nodiscard]] std::vector<double> row_variances(const GroupLight<N>& g) const {
+    std::vector<double> variance(problem_.side_count(), 0.0);
+    scene::parallel_for(rows_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        variance[problem_.sides.active[k]] = row_variance(k, g);
+    });
+    return variance;
+  }
+
   /// Rays taken as independent: an upper bound for stratified ones.
   [[nodiscard]] double row_variance(std::size_t k, const GroupLight<N>& g) const {
     const double n = rows_.rays[k];
@@ -416,8 +468,10 @@ class RowSolver {
            1.0},
           {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
            kShadowRayCost}};
-      const auto plans = plan_samples(problem_, weights_, strata, rest);
+      auto plans = plan_samples(problem_, weights_, strata, rest);
       if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
+      for (Draw& d : plans[1]) d.more += gathered_.valid(d.side) / kReplicates;
+      refine_field(plans[1]);
       work_.begin("direct light", 0.98);
       draw_direct(plans[0]);
       take_direct();

@@ -72,8 +72,13 @@ class Tally {
         replicate_[at][r] += sums.groups[g].replicate[r];
     }
   }
+  /// Starts a side again, from the first sample on.
   void forget(SideIndex i) {
+    drop_sums(i);
     drawn_[i] = 0;
+  }
+  /// Drops what was added for a side; its next samples are new ones all the same.
+  void drop_sums(SideIndex i) {
     valid_[i].fill(0);
     for (std::size_t g = 0; g < groups_; ++g) {
       plain_[g * sides_ + i] = {};
