@@ -66,6 +66,7 @@ std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>
   double area = 0.0;
   double flux = 0.0;
   for (const SideIndex i : problem.sides.active) {
+    if (irradiance[i].is_zero()) continue;
     area += static_cast<double>(problem.area(i));
     flux += static_cast<double>(problem.area(i)) * static_cast<double>(irradiance[i].mean());
   }

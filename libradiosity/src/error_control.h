@@ -39,7 +39,8 @@ class Smoothing {
 };
 
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
-/// floor of 1 % of the mean. The RMS over these is "the error" (docs/radiosity.md, Eq. 9).
+/// floor of 1 % of the mean. Sides that no light reaches do not count: they would only make the
+/// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 9).
 template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
                                                 const SideValues<N>& irradiance);
