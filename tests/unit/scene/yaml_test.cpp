@@ -664,12 +664,12 @@ TEST_F(YamlScenes, CieSkies) {
   const Model clear = read(
       "north: 90\n"
       "sun: {azimuth: 90, elevation: 30, irradiance: 60000}\n"
-      "sky: {cie: 12, irradiance: 15000, ground: 0.4, color: D65}\n");
+      "sky: {cie: 12, irradiance: 15000, ground: 0.4}\n");
   EXPECT_NEAR(dome_irradiance(clear), 15000.0, 1e-6);
   // The ground has the sky's 15000 lx and 60000 sin 30 from the sun.
   EXPECT_NEAR(dome_of(clear).ground(), 0.4 * (1.0 + 30000.0 / 15000.0) / kPi, 1e-12);
   EXPECT_NEAR(number(sun_of(clear).irradiance), 60000.0, 1e-6);
-  EXPECT_NEAR(sun_of(clear).angular_radius * 360.0 / kPi, 0.533, 1e-3);
+  EXPECT_NEAR(static_cast<double>(sun_of(clear).angular_radius) * 360.0 / kPi, 0.533, 1e-3);
   // North is +x, so east is +z; sky and sun agree where the sun is.
   const Vec3d east(0.0, 0.5, std::sqrt(0.75));
   EXPECT_TRUE(towards_sun(clear).isApprox(east, 1e-6));
@@ -700,7 +700,7 @@ TEST_F(YamlScenes, WeatherFiles) {
   EXPECT_NEAR(number(sun_of(model).irradiance), 703.0, 1e-9);
   EXPECT_NEAR(std::asin(towards_sun(model).y()) * 180.0 / kPi, 71.0, 1.0);
   EXPECT_EQ(error("sky: {epw: a.epw, time: [6, 21, 24]}\n"),
-            "scene.yaml:2:26: the sun is 24 degrees below the horizon then");
+            "scene.yaml:2:25: the sun is 24 degrees below the horizon then");
   EXPECT_EQ(error("sky: {epw: a.epw, time: [6, 22, 12]}\n"),
             "a.epw:4: has no row for month 6, day 22, hour 12");
 }
