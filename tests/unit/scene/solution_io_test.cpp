@@ -1,6 +1,7 @@
 #include "scene/solution_io.h"
 
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -143,6 +144,20 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].to_scene.translation().z() = 1.0; }));
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].kind = atrium::scene::SpotLight{}; }));
   EXPECT_TRUE(changed([](Scene& s) { s.environment.emplace(); }));
+  std::set<std::uint64_t> skies;
+  const auto add_sky = [&](int type, const atrium::Vec3d& sun, double ground) {
+    Scene other = scene;
+    other.environment.emplace().pattern =
+        atrium::scene::SkyDome(atrium::scene::cie_sky(type), sun, ground);
+    skies.insert(hash_scene(other));
+  };
+  const atrium::Vec3d up = atrium::Vec3d::UnitY(), side = atrium::Vec3d(1, 1, 0).normalized();
+  add_sky(12, up, 0.2);
+  add_sky(12, up, 0.3);
+  add_sky(12, side, 0.2);
+  add_sky(13, up, 0.2);
+  add_sky(16, up, 0.2);
+  EXPECT_EQ(skies.size(), 5u);
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
 }
 
