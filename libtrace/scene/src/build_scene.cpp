@@ -388,6 +388,7 @@ Scene build_scene(Model model, const BuildOptions& options) {
   scene.lights = std::move(model.lights);
   scene.cameras = std::move(model.cameras);
   scene.environment = std::move(model.environment);
+  scene.medium_extinction = std::move(model.medium_extinction);
   scene.unit = model.unit;
   Builder builder(scene);
   for (Job& job : jobs) builder.add(job, nodes);

@@ -42,7 +42,8 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
   YamlScene scene{model, options, file.string(), RadianceUnit::Nit, {}, {}, {}, {}, {}, {}};
   const YamlMap top = YamlView(tree, scene.file)
                           .map("scene", {"atrium", "description", "unit", "spectra", "materials",
-                                         "groups", "objects", "lights", "cameras", "environment"});
+                                         "groups", "objects", "lights", "cameras", "environment",
+                                         "medium"});
   if (top.get("atrium").number() != 1.0) top.get("atrium").fail("this version reads atrium: 1");
   read_unit(scene, top);
   const std::size_t first_node = model.nodes.size();
@@ -59,6 +60,12 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
   if (const auto view = top.find("environment")) {
     if (model.environment) view->fail("a file before this one has an environment already");
     model.environment = read_environment(scene, *view);
+  }
+  if (const auto view = top.find("medium")) {
+    if (material::max_value(model.medium_extinction) > 0.0)
+      view->fail("a file before this one has a medium already");
+    model.medium_extinction =
+        read_extinction(scene, view->map("medium", {"extinction"}).get("extinction"));
   }
   resolve_powers(scene, first_node);
 }

@@ -130,6 +130,7 @@ std::uint64_t hash_scene(const Scene& scene) {
     h.value(scene.environment->image.value);
     add_vector(h, scene.environment->to_scene.matrix());
   }
+  add(h, scene.medium_extinction);
   h.value(scene.unit);
   return h.result();
 }

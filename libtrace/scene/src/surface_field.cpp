@@ -23,7 +23,7 @@ GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
 }
 
 int cell_coordinate(float x, std::uint32_t n) {
-  return static_cast<int>(std::clamp(std::floor(x), 0.0f, static_cast<float>(n) - 1.0f));
+  return static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(n) - 1.0f));
 }
 
 std::uint32_t cell(const SurfaceField& field, const SurfaceField::Facet& facet, int ix, int iy) {

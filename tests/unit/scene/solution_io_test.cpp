@@ -130,6 +130,7 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].to_scene.translation().z() = 1.0; }));
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].kind = atrium::scene::SpotLight{}; }));
   EXPECT_TRUE(changed([](Scene& s) { s.environment.emplace(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.medium_extinction = 0.1; }));
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
 }
 

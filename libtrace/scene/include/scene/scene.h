@@ -31,6 +31,9 @@ struct Model {
   std::vector<Light> lights;    ///< to_scene is to_world here
   std::vector<Camera> cameras;  ///< likewise
   std::optional<Environment> environment;
+  /// K [1/m] of the air: a medium that fills the bounds of the geometry, absorbs and does not
+  /// scatter.
+  SpectralValue medium_extinction = 0.0;
   RadianceUnit unit = RadianceUnit::Nit;
   std::vector<std::string> warnings;  ///< one line each: what was found and what was done instead
 };
@@ -63,6 +66,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::optional<Environment> environment;
+  SpectralValue medium_extinction = 0.0;  ///< as in Model
   RadianceUnit unit = RadianceUnit::Nit;
 
   Vec3d origin = Vec3d::Zero();  ///< world position of the scene's coordinate origin [m]
