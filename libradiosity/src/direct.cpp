@@ -93,7 +93,7 @@ Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights wh
   if (problem.shading.lights().empty()) return result;
   const SideLight<N> light(problem, std::max(1, samples), which);
   const std::vector<SideIndex>& active = problem.sides.active;
-  work.run(active.size(), 128, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
+  work.run(active.size(), 32, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
     for (std::size_t k = begin; k < end; ++k) light.measure(active[k], result, c);
   });
   return result;

@@ -1,4 +1,3 @@
-#include "follow.h"
 #include "hemisphere.h"
 #include "passes.h"
 
@@ -18,38 +17,30 @@ class Gatherer {
     Spectrum<N> plain, body;
     Replicates spread;
     std::uint32_t valid = 0;
-    for (int k = 0; k < count_; ++k) {
-      const auto index = static_cast<std::uint32_t>(std::max(0, problem_.options.row_rays) + k);
-      scene::Sampler sampler(problem_.options.seed, i, index);
-      const HemisphereRay<N> start(problem_, i, sampler);
+    for (int first = 0; first < count_; first += HemisphereRays<N>::kMost) {
+      const auto index = static_cast<std::uint32_t>(std::max(0, problem_.options.row_rays) + first);
+      const HemisphereRays<N> rays(problem_, i, problem_.options.seed, i, index,
+                                   std::min(HemisphereRays<N>::kMost, count_ - first));
       Spectrum<N> arriving;
-      const PathEnd<N> end =
-          follow<N>(problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
-                    Counter::RaysRow, counters,
-                    [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight,
-                        bool) { arriving += weight * radiosity_at(at, wo); });
-      if (end.inside_solid) continue;
-      ++valid;
-      plain += arriving;
-      body += arriving * start.body_weight;
-      spread.add(k, count_, static_cast<double>(arriving.mean()));
+      rays.follow_all(
+          counters,
+          [&](std::size_t, const Landing<N>& at, const Spectrum<N>& weight) {
+            arriving += weight * at.leaving(problem_.sides, field_[at.side], field_[at.side ^ 1U]);
+          },
+          [&](std::size_t k, const PathEnd<N>& end) {
+            if (!end.inside_solid) {
+              ++valid;
+              plain += arriving;
+              body += arriving * rays.body_weight(k);
+              spread.add(first + static_cast<int>(k), count_, static_cast<double>(arriving.mean()));
+            }
+            arriving = {};
+          });
     }
     store(i, plain, body, valid, spread, result);
   }
 
  private:
-  /// Reflectance of the very point (textures) times irradiance of its element.
-  Spectrum<N> radiosity_at(const scene::Interaction<N>& at, const Vec3f& wo) const {
-    const SideIndex j = problem_.side_at(at.point, at.side);
-    if (j == kNoSide) return {};
-    if (at.bsdf.coupled()) return leaving(j);
-    return at.bsdf.diffuse_reflectance(wo) * field_[j] +
-           at.bsdf.diffuse_transmittance() * field_[j ^ 1U];
-  }
-  Spectrum<N> leaving(SideIndex j) const {
-    return atrium::radiosity::leaving(problem_.sides, j, field_[j], field_[j ^ 1U]);
-  }
-
   static void store(SideIndex i, const Spectrum<N>& plain, const Spectrum<N>& body,
                     std::uint32_t valid, const Replicates& spread, Gathered<N>& result) {
     result.rays[i] = valid;
@@ -78,7 +69,7 @@ Gathered<N> gather(const Problem<N>& problem, const SideValues<N>& field, Work& 
   for (const SideIndex i : active)
     if (!field[i].is_zero()) lit.push_back(i);
   const Gatherer<N> gatherer(problem, field);
-  work.run(lit.size(), 128, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
+  work.run(lit.size(), 32, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
     for (std::size_t k = begin; k < end; ++k) gatherer.gather(lit[k], result, c);
   });
   return result;

@@ -24,6 +24,7 @@ struct Rows {
   std::vector<std::uint32_t> rays;     ///< valid ones, by active side
   std::vector<std::uint32_t> dropped;  ///< origins inside closed bodies
   std::vector<float> escaped;          ///< summed weight that left the scene, lane mean
+  std::vector<float> in_medium;        ///< summed weight that the air took, lane mean
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
   /// Sum over the row of weight * values[target].

@@ -104,9 +104,10 @@ TEST(SolveRows, IsLinearInTheSource) {
     result[g].resize(box.problem.side_count());
     EXPECT_TRUE(solve_rows(box.problem, rows, source[g], none, result[g], box.work).converged);
   }
-  for (const SideIndex i : box.problem.sides.active)
+  for (const SideIndex i : box.problem.sides.active) {
     const double sum = static_cast<double>(result[0][i][0]) + static_cast<double>(result[1][i][0]);
-  EXPECT_NEAR(result[2][i][0], sum, 2e-6 * sum);
+    EXPECT_NEAR(result[2][i][0], sum, 2e-6 * sum);
+  }
 }
 
 TEST(SolveRows, RefusesAWhiteEnclosureByName) {
