@@ -20,7 +20,7 @@ struct SolveSummary {
   double error_estimate = 0.0;
   bool complete = true;
   std::string stopped_by;
-  double emitted = 0.0, absorbed = 0.0, escaped = 0.0, flux_error = 0.0;
+  double emitted = 0.0, absorbed = 0.0, escaped = 0.0, in_medium = 0.0, flux_error = 0.0;
   scene::Counters counters;
 };
 

@@ -142,6 +142,41 @@ TEST(PathTracer, PointLightFollowsInverseSquareAndPanesTransmit) {
   }
 }
 
+// Air that absorbs: a wall of radiance 1 at 2.5 m shows exp(-2.5 K); a floor 1 m below the eye and
+// 2 m below a point light 1000 / 4 rho / pi exp(-(1 + 2) K); the sky above it exp(-K) of the 1 m
+// that is left of the bounds.
+TEST(PathTracer, AirAbsorbsAlongEveryKindOfRay) {
+  const double k = 0.4;
+  {
+    SceneMaker s;
+    s.box(s.diffuse(0.0, 1.0), {0, 0, 0}, {3, 2, 4}, true);
+    scene::Scene scene = s.build();
+    scene.medium_extinction = k;
+    const Picture p =
+        picture(scene, camera_at({1.5, 1, 1.5}, {1.5, 1.001, 4}, 0.002), path_options(4, 16));
+    EXPECT_NEAR(p.mean, std::exp(-2.5 * k), 1e-4);
+  }
+  SceneMaker s;
+  s.quad(s.diffuse(0.5), {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
+  s.quad(s.diffuse(0.0), {-2, 0, -2}, {4, 0, 0}, {0, 2.5, 0});  // a wall: bounds 2.5 m high
+  scene::Light light;
+  light.kind = scene::PointLight{.intensity = 1000.0, .falloff = {}};
+  light.to_scene.translation() = Vec3d(0, 2, 0);
+  s.model().lights.push_back(light);
+  s.model().environment.emplace();
+  scene::Scene scene = s.build();
+  scene.medium_extinction = k;
+  scene.environment->radiance = 1e-9;
+  RenderOptions o = path_options(4, 64);
+  o.method = Method::Direct;
+  const Picture floor = picture(scene, camera_at({0.0, 1.0, 0.05}, {0, 0, 0}, 0.002), o);
+  const double expected = 0.5 / std::numbers::pi * 250.0 * std::exp(-(std::hypot(1, 0.05) + 2) * k);
+  EXPECT_NEAR(floor.mean, expected, 3e-4 * expected);
+  scene.environment->radiance = 1.0;
+  const Picture sky = picture(scene, camera_at({0.0, 1.5, 0.0}, {0, 3, 1e-4}, 0.002), o);
+  EXPECT_NEAR(sky.mean, std::exp(-k), 1e-4);
+}
+
 // The same seed gives the same bits, whatever the terms are split into; the terms sum to the image.
 TEST(Render, TermsSumToTheImage) {
   SceneMaker s;

@@ -26,7 +26,7 @@ GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
 }
 
 std::uint32_t cell_coordinate(float x, std::uint32_t n) {
-  return static_cast<std::uint32_t>(std::clamp(std::floor(x), 0.0f, static_cast<float>(n) - 1.0f));
+  return static_cast<std::uint32_t>(static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(n) - 1.0f)));
 }
 
 /// The leaf that a place lies in: an element or kNone.
