@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "scene/light_groups.h"
 #include "trace/render.h"
 #include "trace/tone_map.h"
 
@@ -48,6 +49,9 @@ struct SolveSettings {
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
   std::uint64_t seed = 1;
   bool paper_weights = false;  ///< --mode paper
+  scene::Grouping light_groups = scene::Grouping::One;
+  bool keep_state = false;  ///< a solution is written, from which a later run may go on
+  bool keep_rows = false;   ///< with the rows
 };
 
 struct RenderCommand {
@@ -73,7 +77,15 @@ struct SolveCommand {
   CommonOptions common;
   SceneOptions scene;
   SolveSettings solve;
+  std::string solution;  ///< to go on from; may be empty
   std::vector<std::string> outputs;
+};
+
+/// `atrium reweight`.
+struct ReweightCommand {
+  std::string solution;
+  std::vector<std::pair<std::string, double>> factors;  ///< by group
+  std::string output;
 };
 
 struct InfoCommand {
@@ -134,7 +146,7 @@ struct Finished {
   int code = 0;
 };
 
-using Command = std::variant<Finished, RenderCommand, SolveCommand, InfoCommand, CompareCommand,
+using Command = std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, InfoCommand, CompareCommand,
                              MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
                              MaterialShowCommand, MaterialCompareCommand>;
 

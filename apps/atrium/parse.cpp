@@ -23,6 +23,7 @@ struct Texts {
                                   quality = "normal", indirect = "auto", solver = "rows",
                                   mode = "radiometric", emissive_unit = "nit";
   bool no_pane_detection = false;
+  bool light_groups = false;
 };
 
 /// The same of `material derive`.
@@ -323,6 +324,8 @@ struct Parser {
   CLI::App app{"Atrium: light in buildings by radiosity and ray tracing", "atrium"};
   RenderCommand render;
   SolveCommand solve;
+  ReweightCommand reweight;
+  std::vector<std::string> reweight_factors;
   InfoCommand info;
   CompareCommand compare;
   MaterialParser material;
@@ -339,6 +342,8 @@ struct Parser {
     app.fallthrough();
     add_render(*app.add_subcommand("render", "render a picture of a scene"), render, render_texts);
     add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
+    add_reweight_command(
+        *app.add_subcommand("reweight", "dim the light groups of a solution, without a ray"));
     add_info_command(*app.add_subcommand("info", "what a file contains, needs and goes without"));
     add_compare_command(*app.add_subcommand("compare", "error measures between two images"));
     material.add(*app.add_subcommand("material", "explore the material model"));
@@ -353,7 +358,27 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     add_solve(sub, solve.solve, solve_texts);
+    sub.add_option("--solution", solve.solution,
+                   "go on from this solution: interrupted, or of other diffuse reflectances")
+        ->type_name("FILE.atrium");
+    sub.add_flag("--keep-rows", solve.solve.keep_rows,
+                 "store the rows in .atrium too: larger, but later runs need not trace them again");
+    sub.add_flag("--light-groups", solve_texts.light_groups,
+                 "keep the light of each lamp name apart, for reweight; default: of each "
+                 "light_group that the scene names");
     add_common(sub, solve.common);
+  }
+  void add_reweight_command(CLI::App& sub) {
+    sub.add_option("solution", reweight.solution, "of atrium solve, with light groups")
+        ->required()
+        ->type_name("FILE.atrium");
+    sub.add_option("--set", reweight_factors,
+                   "factor of a group's light as it was solved, may be repeated; others stay")
+        ->required()
+        ->type_name("NAME=FACTOR");
+    sub.add_option("-o,--output", reweight.output, "dimmed solution")
+        ->required()
+        ->type_name("FILE.atrium");
   }
   void add_info_command(CLI::App& sub) {
     add_scene(sub, info.scene, info_texts);
@@ -415,8 +440,19 @@ Command finished_command(Parser& p, const std::string& command_line) {
   if (name == "solve") {
     finish(p.solve.scene, p.solve_texts);
     finish(p.solve.solve, p.solve_texts);
+    p.solve.solve.light_groups =
+        p.solve_texts.light_groups                      ? scene::Grouping::ByName
+        : p.solve.solve.solver == SolverChoice::Rows ? scene::Grouping::Declared
+                                                     : scene::Grouping::One;
+    if (!p.solve.solution.empty() && p.solve.solve.solver != SolverChoice::Rows)
+      throw Error("--solution: only --solver rows can go on from a solution");
     p.solve.common.command_line = command_line;
     return p.solve;
+  }
+  if (name == "reweight") {
+    ReweightCommand o = p.reweight;
+    for (const std::string& text : p.reweight_factors) o.factors.push_back(parse_factor(text));
+    return o;
   }
   if (name == "info") {
     finish(p.info.scene, p.info_texts);

@@ -48,6 +48,9 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.direct_samples = effort.direct_samples;
   o.caustic_photons = effort.caustic_photons;
   o.seed = settings.seed;
+  if (settings.keep_state)
+    o.keep = settings.keep_rows ? radiosity::Keep::Rows : radiosity::Keep::Samples;
+  o.light_groups = settings.light_groups;
   o.paper_weights = settings.paper_weights;
   o.time_limit = time_limit;
   return o;
@@ -75,10 +78,15 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
 bool radiosity_available() { return true; }
 
 RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
-                           const SolveSettings& settings, double time_limit, bool want_mesh) {
+                           const SolveSettings& settings, double time_limit, bool want_mesh,
+                           const scene::Solution* previous) {
+  const radiosity::SolveOptions options = solve_options(settings, time_limit);
+  const scene::Control control = session.control("radiosity");
   radiosity::SolveResult result =
-      radiosity::solve(*loaded.query, loaded.basis, solve_options(settings, time_limit),
-                       session.control("radiosity"));
+      previous == nullptr
+          ? radiosity::solve(*loaded.query, loaded.basis, options, control)
+          : radiosity::solve(*loaded.query, loaded.basis, options, control,
+                             radiosity::Previous{previous->field, previous->state});
   RadiosityRun run;
   run.summary = summarise(result);
   if (want_mesh) {
@@ -86,6 +94,8 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
         radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);
   }
   run.field = std::move(result.field);
+  run.groups = std::move(result.groups);
+  run.state = std::move(result.state);
   session.clock.leave();
   session.detail("radiosity: " + std::to_string(run.summary.elements) + " elements, " +
                  std::to_string(run.summary.iterations) + " iterations, stopped by " +
@@ -97,7 +107,8 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
 
 bool radiosity_available() { return false; }
 
-RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool) {
+RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool,
+                           const scene::Solution*) {
   throw RuntimeFailure("radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
 }
 

@@ -134,6 +134,8 @@ void save_solution(Session& session, const RenderCommand& c, const LoadedScene& 
   }
   session.clock.enter("write");
   scene::write_solution({.field = field,
+                         .groups = {},
+                         .state = {},
                          .scene_hash = scene::hash_scene(*loaded.scene),
                          .basis = describe_lanes(loaded, c.solve),
                          .options = describe(c.solve)},

@@ -38,7 +38,9 @@ class PhotonTracer {
         problem_, {e->origin, e->direction}, e->weight, sampler, material::Transport::Flux,
         Counter::RaysPhoton, counters, [&](const Landing<N>& at, const Spectrum<N>& flux) {
           left -= static_cast<double>(flux.mean());
-          if (at.specular) batch.deposits.push_back({at.side, 0, flux, flux * at.body_weight()});
+          if (at.specular)
+            batch.deposits.push_back(
+                {at.side, problem_.group_of(e->source), flux, flux * at.body_weight()});
         });
     const double escaped = static_cast<double>(end.escaped.mean());
     batch.escaped += escaped;

@@ -82,11 +82,11 @@ std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>
 
 template <int N>
 std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours& neighbours,
-                                    const Tally<N>& tally, Samples whose) {
+                                    const Tally<N>& tally, Samples whose, GroupChoice group) {
   const std::vector<SideIndex>& active = problem.sides.active;
   std::vector<double> value(problem.side_count(), 0.0);
   for (const SideIndex i : active)
-    for (std::size_t g = 0; g < tally.groups(); ++g)
+    for (std::size_t g = group.value_or(0); g < (group ? *group + 1 : tally.groups()); ++g)
       value[i] += static_cast<double>(tally.mean(i, g).mean());
   std::vector<double> scale(problem.side_count(), 0.0);     // squared
   std::vector<double> relative(problem.side_count(), 0.0);  // variance over scale
@@ -96,7 +96,8 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
     const double mean = local_mean<N>(neighbours, i, [&](SideIndex j) { return value[j]; });
     scale[i] = mean * mean;
     if (!(scale[i] > 0.0) || tally.valid(i) == 0) continue;
-    relative[i] = tally.variance(i) * tally.valid(i) / scale[i];
+    const double variance = group ? tally.variance(i, *group) : tally.variance(i);
+    relative[i] = variance * tally.valid(i) / scale[i];
     all += relative[i];
     count += 1.0;
   }
@@ -150,7 +151,7 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
   template class Smoothing<N>;                                                                   \
   template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&);            \
   template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
-                                               const Tally<N>&, Samples);                        \
+                                               const Tally<N>&, Samples, GroupChoice);           \
   template std::vector<std::vector<Draw>> plan_samples(const Problem<N>&,                        \
                                                        const std::vector<double>&,               \
                                                        const std::vector<Stratum<N>>&, double);

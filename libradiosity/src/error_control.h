@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "tally.h"
@@ -30,7 +31,18 @@ class Smoothing {
   /// \param guide  noisy values by side. \param variance  of their lane means.
   Smoothing(const Problem<N>& problem, const Neighbours& neighbours, const SideValues<N>& guide,
             const std::vector<double>& variance);
+  /// \param weight  weights() of another one for the same sides.
+  Smoothing(const Problem<N>& problem, const Neighbours& neighbours, std::vector<float> weight)
+      : problem_(&problem), neighbours_(&neighbours), weight_(std::move(weight)) {}
   [[nodiscard]] SideValues<N> operator()(const SideValues<N>& values) const;
+  [[nodiscard]] const std::vector<float>& weights() const { return weight_; }
+  /// Are there as many weights as neighbours?
+  [[nodiscard]] bool fits() const {
+    std::size_t count = 0;
+    for (const SideIndex i : problem_->sides.active)
+      neighbours_->visit(i, [&](SideIndex) { ++count; });
+    return weight_.size() == count;
+  }
 
  private:
   const Problem<N>* problem_;
@@ -45,15 +57,18 @@ template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
                                                 const SideValues<N>& irradiance);
 
-/// Variance of one sample of each side (lane mean, all groups), pooled as relative variance: of the
+/// Variance of one sample of each side (lane mean, of all groups or one), pooled as relative variance: of the
 /// neighbours' samples for a decision about a side, which must not depend on the samples that it
 /// stops; of its own and the neighbours' samples for the report, which four replicates alone would
 /// make unsteady.
 enum class Samples { Neighbours, All };
+using GroupChoice = std::optional<std::size_t>;
+inline constexpr GroupChoice kAllGroups = std::nullopt;
 template <int N>
 [[nodiscard]] std::vector<double> sample_variance(const Problem<N>& problem,
                                                   const Neighbours& neighbours,
-                                                  const Tally<N>& tally, Samples whose);
+                                                  const Tally<N>& tally, Samples whose,
+                                                  GroupChoice group = kAllGroups);
 
 /// One kind of sampling.
 template <int N>

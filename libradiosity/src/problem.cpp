@@ -202,6 +202,7 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
       elements(elements_in),
       options(options_in),
       points(shading_in.scene(), elements_in),
+      groups(scene::find_light_groups(shading_in.scene(), options_in.light_groups)),
       specular(specular_scene(shading_in.scene())) {
   const std::size_t n = side_count();
   // By place, not by number: what is known of an element stays when others are divided.

@@ -5,6 +5,7 @@
 
 #include "radiosity/elements.h"
 #include "radiosity/solve.h"
+#include "scene/light_groups.h"
 #include "scene/sampler.h"
 #include "scene/shading.h"
 #include "work.h"
@@ -85,9 +86,11 @@ struct Problem {
   const SolveOptions& options;
   ElementPoints points;
   Sides<N> sides;
+  scene::LightGroups groups;
   bool specular = false;  ///< does anything mirror, refract or gloss?
 
-  [[nodiscard]] std::size_t group_count() const { return 1; }
+  [[nodiscard]] std::size_t group_count() const { return groups.size(); }
+  [[nodiscard]] std::uint32_t group_of(std::uint32_t source) const { return groups.group[source]; }
   [[nodiscard]] std::size_t side_count() const { return elements.layout.element_count() * 2; }
   [[nodiscard]] float area(SideIndex i) const { return elements.layout.element_area[i / 2]; }
   [[nodiscard]] int level(SideIndex i) const { return elements.layout.element_level[i / 2]; }

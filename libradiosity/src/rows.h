@@ -50,6 +50,19 @@ struct Rows {
   std::size_t groups = 0;
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
+  /// Of these sides, with every index in its range?
+  [[nodiscard]] bool is_for(std::size_t sides, std::size_t active) const {
+    bool ok = rays.size() == active && first.size() == active + 1 && dropped.size() == active &&
+              escaped.size() == active && in_medium.size() == active &&
+              hot.size() == 2 * groups * active && first.front() == 0 &&
+              first.back() == entries.size();
+    for (std::size_t k = 0; k < active && ok; ++k) ok = first[k] <= first[k + 1];
+    for (const Entry& e : entries) {
+      const bool chromatic = (e.target & kChromatic) != 0;
+      ok = ok && (e.target & ~kChromatic) < sides && (!chromatic || e.spectral < spectral.size());
+    }
+    return ok;
+  }
   [[nodiscard]] Spectrum<N> hot_sum(std::size_t k, std::size_t group, bool body) const {
     return hot.empty() ? Spectrum<N>() : hot[(k * groups + group) * 2 + (body ? 1 : 0)];
   }

@@ -1,4 +1,5 @@
 #include "error_control.h"
+#include "scene/archive.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -22,6 +23,30 @@ struct GroupLight {
   SideValues<N> seen;                     ///< bounced, smoothed: what fresh rays read
 };
 
+/// Samples per replicate that a side has to get to; may be asked for any number of times.
+struct Goal {
+  SideIndex side;
+  std::uint32_t until;
+};
+template <int N>
+std::vector<Goal> goals_of(const std::vector<Draw>& plan, const Tally<N>& tally) {
+  std::vector<Goal> goals;
+  for (const Draw& d : plan) goals.push_back({d.side, tally.drawn(d.side) + d.more});
+  return goals;
+}
+template <int N>
+std::vector<Draw> missing(const std::vector<Goal>& goals, const Tally<N>& tally) {
+  std::vector<Draw> plan;
+  for (const Goal& g : goals)
+    if (g.until > tally.drawn(g.side)) plan.push_back({g.side, g.until - tally.drawn(g.side)});
+  return plan;
+}
+
+/// What is being done. A stage that was interrupted is taken up again from what was drawn.
+enum class Stage : std::uint8_t { Light, Rows, FirstGather, Gather, RoundLight, RoundGather };
+
+/// Solves by rows, in stages. An interrupt leaves the state in which a later solver gets to the same
+/// bits: every decision depends on samples that were complete when it was made, or is remembered.
 template <int N>
 class RowSolver {
  public:
@@ -40,16 +65,58 @@ class RowSolver {
         exposed_(problem.side_count(), 1.0f),
         mixed_(problem.side_count(), 0) {}
 
+  /// Takes over where another solver of the same elements was.
+  /// \param same_light  false: reflectances have changed since; then what does not depend on them.
+  void restore(scene::ArchiveReader& reader, bool same_light) {
+    archive(reader);
+    if (!consistent()) reader.damaged();
+    if (stage_ <= Stage::Rows) {
+      // These follow from rows that are traced again.
+      exposed_.assign(problem_.side_count(), 1.0f);
+      mixed_.assign(problem_.side_count(), 0);
+      result_.valid = problem_.sides.is_active;
+      groups_.assign(groups_.size(), GroupLight<N>());
+      if (!same_light) forget_reflected();
+      return;
+    }
+    if (!same_light && hot_reflectance_ != hot_reflectance()) {
+      // What rays found of hot patches by chance is in the rows.
+      forget_reflected();
+      stage_ = Stage::Rows;
+      return;
+    }
+    work_.begin("rows", 0.4);
+    if (rows_.rays.empty()) trace_again();
+    take_direct();
+    if (same_light) return;
+    forget_reflected();
+    solve_bounces();
+    stage_ = Stage::FirstGather;
+  }
+
   Solution<N> solve() {
-    work_.begin("direct light", 0.15);
-    draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
-    work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
-    photons_ = trace_photons(problem_, work_, counters_);
-    build_rows();
+    if (stage_ == Stage::Light) {
+      work_.begin("direct light", 0.15);
+      draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
+      work_.begin(problem_.specular ? "caustics" : "flux balance",
+                  problem_.specular ? 0.3 : 0.17);
+      photons_ = trace_photons(problem_, work_, counters_);
+      (void)paused(Stage::Light);
+    }
+    if (stage_ <= Stage::Rows) build_rows();
     work_.begin("gathering", 0.98);
-    gather_twice(by_error() ? kPilot : problem_.options.gather_rays);
+    if (stage_ < Stage::RoundLight)
+      gather_twice(by_error() ? kPilot : problem_.options.gather_rays);
+    else if (finish_round())
+      ++round_;
+    else
+      assemble();
     if (by_error()) reach_error();
+    if (!work_.stopped()) round_ = 0;
+    keep();
+    result_.state = std::move(state_);
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
+    hand_over_groups();
     return std::move(result_);
   }
 
@@ -84,14 +151,161 @@ class RowSolver {
   /// the rows' own noise would stay in the second bounce otherwise. Few rays are not worth it.
   void gather_twice(int rays) {
     constexpr int kWorthwhile = 64;
-    const std::vector<SideIndex> lit = lit_sides();
-    if (rays >= kWorthwhile) {
-      draw_gather(top_up(problem_, gathered_, lit, rays / 4));
-      assemble();
-      refine_field(top_up(problem_, gathered_, lit, rays));
+    if (stage_ < Stage::Gather) {
+      const std::vector<SideIndex> lit = lit_sides();
+      if (rays >= kWorthwhile) {
+        draw_gather(top_up(problem_, gathered_, lit, rays / 4));
+        const bool stop = paused(Stage::FirstGather);
+        assemble();
+        if (stop || paused(Stage::FirstGather)) return;
+      }
+      const std::vector<Draw> plan = top_up(problem_, gathered_, lit, rays);
+      gather_goals_ = goals_of(plan, gathered_);
+      if (rays >= kWorthwhile) refine_field(plan);
     }
-    draw_gather(top_up(problem_, gathered_, lit, rays));
+    draw_gather(missing(gather_goals_, gathered_));
+    (void)paused(Stage::Gather);
     assemble();
+    (void)paused(Stage::Gather);
+  }
+
+  /// Says what is being done. \return  true if the work is to stop here; then what is known now is
+  /// kept for later.
+  bool paused(Stage stage) {
+    stage_ = stage;
+    if (work_.stopped()) keep();
+    return work_.stopped();
+  }
+  void keep() {
+    if (problem_.options.keep == Keep::Nothing || !state_.empty() || !caught_up_) return;
+    scene::ArchiveWriter writer;
+    hot_reflectance_ = hot_reflectance();
+    archive(writer);
+    state_ = std::move(writer.bytes);
+  }
+
+  /// One list for both directions.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(stage_);
+    a(round_);
+    a(result_.iteration.iterations);
+    direct_.archive(a);
+    shot_.archive(a);
+    gathered_.archive(a);
+    a(direct_goals_);
+    a(shot_goals_);
+    a(gather_goals_);
+    a(hot_chosen_);
+    a(hot_light_known_);
+    hot_.archive(a);
+    a(hot_reflectance_);
+    a(exposed_);
+    a(mixed_);
+    a(result_.valid);
+    photons_.caustic.resize(groups_.size());
+    for (Estimate<N>& e : photons_.caustic) {
+      a(e.irradiance.plain);
+      a(e.irradiance.body);
+      a(e.variance);
+    }
+    for (auto* v : {&photons_.escaped, &photons_.absorbed, &photons_.in_medium, &photons_.variance})
+      a(*v);
+    a(photons_.count);
+    for (GroupLight<N>& g : groups_) {
+      for (auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot}) a(*v);
+      a(g.refined);
+      std::vector<float> weights;
+      if (g.smoothing) weights = g.smoothing->weights();
+      a(weights);
+      if (!g.smoothing && !weights.empty())
+        g.smoothing.emplace(problem_, neighbours_, std::move(weights));
+    }
+    archive_rows(a);
+  }
+
+  /// The rows, or how many rays each had: then they are traced again.
+  template <class Archive>
+  void archive_rows(Archive& a) {
+    std::vector<std::uint32_t> traced;
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      traced.push_back(rows_.rays[k] + rows_.dropped[k]);
+    a(traced);
+    traced_ = std::move(traced);
+    bool stored = problem_.options.keep == Keep::Rows && stage_ > Stage::Rows;
+    a(stored);
+    if (!stored) return;
+    a(rows_.first);
+    a(rows_.entries);
+    a(rows_.spectral);
+    a(rows_.rays);
+    a(rows_.dropped);
+    a(rows_.escaped);
+    a(rows_.in_medium);
+    a(rows_.hot);
+    rows_.groups = hot_.groups();
+  }
+
+  /// Can what was read be of this problem? Indices are used without checks later.
+  [[nodiscard]] bool consistent() const {
+    const std::size_t n = problem_.side_count();
+    const bool body = problem_.sides.any_coupled;
+    bool ok = stage_ <= Stage::RoundGather && direct_.is_for(n, groups_.size(), body) &&
+              shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
+              exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n;
+    const auto in_range = [n](SideIndex i) { return i < n; };
+    for (const auto* goals : {&direct_goals_, &shot_goals_, &gather_goals_})
+      for (const Goal& g : *goals) ok = ok && in_range(g.side);
+    ok = ok && hot_.is_for(n, groups_.size());
+    if (!ok || stage_ <= Stage::Rows) return ok;
+    ok = traced_.size() == problem_.sides.active.size();
+    for (const Estimate<N>& e : photons_.caustic)
+      ok = ok && e.irradiance.plain.size() == n && e.variance.size() == n &&
+           e.irradiance.body.size() == (body ? n : 0);
+    for (const GroupLight<N>& g : groups_) {
+      for (const auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot})
+        ok = ok && v->size() == n;
+      ok = ok && g.smoothing && g.smoothing->fits();
+    }
+    return ok && (rows_.rays.empty() || rows_.is_for(n, problem_.sides.active.size()));
+  }
+
+  /// The same rays as before, in the same rounds.
+  void trace_again() {
+    const int all = std::max(1, problem_.options.row_rays);
+    for (int from = 0, to = std::min(kPilot, all); from < all;
+         from = to, to = std::min(2 * to, all)) {
+      std::vector<std::uint8_t> wanted;
+      for (const std::uint32_t rays : traced_)
+        wanted.push_back(static_cast<int>(rays) >= to ? 1 : 0);
+      rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
+    }
+    caught_up_ = !work_.stopped();
+  }
+
+  [[nodiscard]] std::vector<float> hot_reflectance() const {
+    std::vector<float> all;
+    for (const SideIndex i : hot_.sides()) {
+      const Spectrum<N>& rho = problem_.sides.reflectance[i];
+      all.insert(all.end(), rho.lane.begin(), rho.lane.end());
+    }
+    return all;
+  }
+
+  /// What depends on reflectances. Which patches are hot does not matter to the result, and their
+  /// light straight from the lights is what it was.
+  void forget_reflected() {
+    const auto empty = [&] {
+      return Tally<N>(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
+    };
+    if (hot_reflectance_ != hot_reflectance()) shot_ = empty();
+    gathered_ = empty();
+    for (GroupLight<N>& g : groups_) g = GroupLight<N>();
+    if (stage_ > Stage::Rows) take_direct();
+    round_ = 0;
+    direct_goals_.clear();
+    shot_goals_.clear();
+    gather_goals_.clear();
   }
 
   /// A first round of rays for every side; more where it found light. A side that sees only dark
@@ -102,7 +316,8 @@ class RowSolver {
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
     take_direct();
-    hot_ = HotPatches<N>(problem_, sources());
+    if (!hot_chosen_) hot_ = HotPatches<N>(problem_, sources());
+    hot_chosen_ = true;
     know_hot_light();
     rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
                           counters_);
@@ -112,6 +327,7 @@ class RowSolver {
     draw_hot(top_up(problem_, shot_, problem_.sides.active,
                     by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2)));
     solve_bounces();
+    (void)paused(Stage::Rows);
     if (first == all) return;
     work_.begin("rows", 0.6);
     for (int from = first, to = 2 * first; from < all; from = to, to *= 2) {
@@ -124,6 +340,7 @@ class RowSolver {
       rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
     }
     solve_bounces();
+    (void)paused(Stage::Rows);
   }
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
@@ -131,31 +348,36 @@ class RowSolver {
   void know_hot_light() {
     constexpr int kFirst = 256;
     constexpr int kMost = 65536;
-    if (hot_.empty()) return;
+    if (hot_.empty() || hot_light_known_) return;
     const double allowed = by_error() ? std::pow(0.25 * problem_.options.error, 2) : 1.0;
     for (int samples = kFirst; samples <= kMost && !work_.stopped(); samples *= 2) {
-      std::vector<Draw> plan;
-      for (const SideIndex i : hot_.sides())
-        plan.push_back({i, static_cast<std::uint32_t>(samples / kReplicates)});
-      draw_direct(plan);
+      const auto until = static_cast<std::uint32_t>((2 * samples - kFirst) / kReplicates);
+      std::vector<Goal> goals;
+      bool beyond = false;  // then this was not enough when it was asked before
+      for (const SideIndex i : hot_.sides()) {
+        goals.push_back({i, until});
+        beyond = beyond || direct_.drawn(i) > until;
+      }
+      draw_direct(missing(goals, direct_));
       take_direct();
       hot_.set_source(sources());
-      if (hot_flux_variance() <= allowed) return;
+      if (!beyond && hot_flux_variance() <= allowed) break;
     }
+    hot_light_known_ = !work_.stopped();
   }
 
   /// Relative variance of the whole flux that hot patches reflect first.
-  [[nodiscard]] double hot_flux_variance() const {
+  [[nodiscard]] double hot_flux_variance(GroupChoice group = kAllGroups) const {
     double flux = 0.0;
     double variance = 0.0;
     for (const SideIndex i : hot_.sides()) {
       const double scale = static_cast<double>(problem_.area(i)) *
                            static_cast<double>(problem_.sides.reflectance[i].mean());
       double direct = 0.0;
-      for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t g = first_of(group); g < end_of(group); ++g)
         direct += static_cast<double>(hot_.source(i, g).mean());
       flux += scale * direct;
-      variance += scale * scale * direct_.variance(i);
+      variance += scale * scale * (group ? direct_.variance(i, *group) : direct_.variance(i));
     }
     return flux > 0.0 ? variance / (flux * flux) : 0.0;
   }
@@ -261,11 +483,11 @@ class RowSolver {
   /// What samples found is a better field than the rows' for the next samples to read. Those that
   /// go on are drawn anew against it.
   void refine_field(const std::vector<Draw>& plan) {
-    const std::vector<double> variance = indirect_variances();
-    for (GroupLight<N>& g : groups_) {
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      GroupLight<N>& g = groups_[n];
       for (const SideIndex i : problem_.sides.active)
         g.bounced[i] = exchange(problem_, g.indirect, i);
-      smooth(g, variance);
+      smooth(g, indirect_variances(n));
       g.refined = true;
     }
     for (const Draw& d : plan) gathered_.drop_sums(d.side);
@@ -297,7 +519,7 @@ class RowSolver {
     for (std::size_t g = 0; g < groups_.size(); ++g) pool(g);
     sum_groups();
     estimate_variance();
-    for (GroupLight<N>& g : groups_) propagate(g);
+    for (std::size_t g = 0; g < groups_.size(); ++g) propagate(g);
     sum_groups();
   }
 
@@ -308,15 +530,18 @@ class RowSolver {
     for (std::size_t k = 0; k < rows_.size(); ++k) pool(k, group, b);
   }
 
-  [[nodiscard]] std::vector<double> indirect_variances() const {
-    return {result_.indirect.variance.begin(), result_.indirect.variance.end()};
+  [[nodiscard]] std::vector<double> indirect_variances(std::size_t group) const {
+    const std::vector<float>& v =
+        groups_.size() > 1 ? group_variances_[group].indirect : result_.indirect.variance;
+    return {v.begin(), v.end()};
   }
 
-  void propagate(GroupLight<N>& g) {
+  void propagate(std::size_t group) {
+    GroupLight<N>& g = groups_[group];
     SideValues<N> difference(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       difference[i] = exchange(problem_, g.indirect, i);
-    const Smoothing<N> smoothing(problem_, neighbours_, difference, indirect_variances());
+    const Smoothing<N> smoothing(problem_, neighbours_, difference, indirect_variances(group));
     difference = smoothing(difference);
     for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
     const SideValues<N> none(problem_.side_count());
@@ -375,35 +600,40 @@ class RowSolver {
     sum(&GroupLight<N>::indirect, result_.indirect);
   }
 
-  void estimate_variance() {
-    const std::vector<double> direct =
-        sample_variance(problem_, neighbours_, direct_, Samples::All);
-    const std::vector<double> fresh =
-        sample_variance(problem_, neighbours_, gathered_, Samples::All);
-    const std::vector<double> shot = sample_variance(problem_, neighbours_, shot_, Samples::All);
+  struct Variances {
+    std::vector<float> direct, caustic, indirect;  ///< by side
+  };
+
+  /// Variances of the means of one group, or of the sum of all.
+  [[nodiscard]] Variances variances(GroupChoice group) const {
+    const auto of = [&](const Tally<N>& tally) {
+      return sample_variance(problem_, neighbours_, tally, Samples::All, group);
+    };
+    const std::vector<double> direct = of(direct_);
+    const std::vector<double> fresh = of(gathered_);
+    const std::vector<double> shot = of(shot_);
+    const std::vector<float> none(problem_.side_count(), 0.0f);
+    Variances v{none, none, none};
     std::vector<double> total(problem_.side_count(), 0.0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
       const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
       const double n = direct_.valid(i);
-      result_.direct.variance[i] =
-          static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
-      result_.caustic.variance[i] = exposed * exposed * caustic_variance(i);
+      v.direct[i] = static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
+      v.caustic[i] = exposed * exposed * caustic_variance(i, group);
       const double shots = shot_.valid(i);
-      result_.indirect.variance[i] =
-          static_cast<float>(indirect_variance(k, fresh[i]) +
-                             (shots > 0.0 ? shot[i] / shots : 0.0));
-      total[i] = static_cast<double>(result_.direct.variance[i]) +
-                 static_cast<double>(result_.caustic.variance[i]) +
-                 static_cast<double>(result_.indirect.variance[i]);
+      v.indirect[i] = static_cast<float>(indirect_variance(k, fresh[i], group) +
+                                         (shots > 0.0 ? shot[i] / shots : 0.0));
+      total[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.caustic[i]) +
+                 static_cast<double>(v.indirect[i]);
     }
-    const double common = hot_flux_variance();
+    const double common = hot_flux_variance(group);
     if (common > 0.0)
       for (const SideIndex i : problem_.sides.active) {
         double first = 0.0;
-        for (std::size_t g = 0; g < groups_.size(); ++g)
+        for (std::size_t g = first_of(group); g < end_of(group); ++g)
           first += static_cast<double>(shot_.mean(i, g).mean());
-        result_.indirect.variance[i] += static_cast<float>(common * first * first);
+        v.indirect[i] += static_cast<float>(common * first * first);
       }
     // The errors of what a side sees reach it too, as far as they do not average out.
     std::vector<double> leaving_variance(problem_.side_count(), 0.0);
@@ -413,8 +643,23 @@ class RowSolver {
       leaving_variance[i] = rho * rho * total[i] + tau * tau * total[i ^ 1U];
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      result_.indirect.variance[problem_.sides.active[k]] +=
+      v.indirect[problem_.sides.active[k]] +=
           static_cast<float>(rows_.apply_squared(k, leaving_variance));
+    return v;
+  }
+  [[nodiscard]] static std::size_t first_of(GroupChoice group) { return group.value_or(0); }
+  [[nodiscard]] std::size_t end_of(GroupChoice group) const {
+    return group ? *group + 1 : groups_.size();
+  }
+
+  void estimate_variance() {
+    Variances v = variances(kAllGroups);
+    result_.direct.variance = std::move(v.direct);
+    result_.caustic.variance = std::move(v.caustic);
+    result_.indirect.variance = std::move(v.indirect);
+    group_variances_.clear();
+    for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
+      group_variances_.push_back(variances(g));
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
     weights_ = error_weights(problem_, irradiance);
@@ -423,19 +668,33 @@ class RowSolver {
                                        weighted(result_.indirect.variance));
   }
 
-  [[nodiscard]] float caustic_variance(SideIndex i) const {
+  /// Every group's part, for whoever dims the lights later.
+  void hand_over_groups() {
+    if (groups_.size() < 2) return;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      Variances& v = group_variances_[g];
+      for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
+      result_.groups.push_back({std::move(groups_[g].direct), std::move(groups_[g].caustic),
+                                std::move(groups_[g].indirect), std::move(v.direct),
+                                std::move(v.indirect)});
+    }
+  }
+
+  [[nodiscard]] float caustic_variance(SideIndex i, GroupChoice group) const {
     float sum = 0.0f;
-    for (const Estimate<N>& e : photons_.caustic) sum += e.variance[i];
+    for (std::size_t g = first_of(group); g < end_of(group); ++g)
+      sum += photons_.caustic[g].variance[i];
     return sum;
   }
 
   /// \param fresh  variance of one fresh ray.
-  [[nodiscard]] double indirect_variance(std::size_t k, double fresh) const {
+  [[nodiscard]] double indirect_variance(std::size_t k, double fresh, GroupChoice group) const {
     const double share = static_cast<double>(fresh_share(k));
     const double n = gathered_.valid(problem_.sides.active[k]);
     if (n > 0.0) return share * fresh / n;
     double sum = 0.0;
-    for (const GroupLight<N>& g : groups_) sum += row_variance(k, g);
+    for (std::size_t g = first_of(group); g < end_of(group); ++g)
+      sum += row_variance(k, groups_[g]);
     return sum;
   }
 
@@ -476,42 +735,71 @@ class RowSolver {
   /// Rounds of samples where they count most, until the estimate is below what was asked for.
   void reach_error() {
     constexpr int kMaxRounds = 12;
-    constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
-    const double target = problem_.options.error;
-    for (int round = 0; round < kMaxRounds; ++round) {
-      if (result_.error_estimate <= target || work_.stopped()) return;
-      const double fixed = weighted(result_.caustic.variance);
-      if (fixed > 0.5 * target * target && !more_photons()) return;
-      const double rest = std::sqrt(std::max(0.25 * target * target, target * target - fixed));
-      const std::vector<Stratum<N>> strata{
-          {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
-           kShadowRayCost},
-          {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours),
-           1.0},
-          {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
-           kShadowRayCost}};
-      auto plans = plan_samples(problem_, weights_, strata, rest);
-      if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
-      for (Draw& d : plans[1]) d.more += gathered_.valid(d.side) / kReplicates;
-      refine_field(plans[1]);
-      work_.begin("direct light", 0.98);
-      draw_direct(plans[0]);
-      take_direct();
-      draw_hot(plans[2]);
-      solve_bounces();
-      work_.begin("gathering", 0.98);
-      draw_gather(plans[1]);
-      assemble();
+    for (; round_ < kMaxRounds; ++round_) {
+      if (result_.error_estimate <= problem_.options.error || work_.stopped()) return;
+      if (!plan_round() || !finish_round()) return;
     }
   }
 
-  /// Twice as many photons, all of them new. False at the end of their numbers.
+  /// Says what the next round has to draw; false if nothing.
+  bool plan_round() {
+    constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
+    const double target = problem_.options.error;
+    const double fixed = weighted(result_.caustic.variance);
+    const bool photons = fixed > 0.5 * target * target;
+    if (photons && !more_photons()) return false;
+    const double rest = std::sqrt(std::max(0.25 * target * target, target * target - fixed));
+    const std::vector<Stratum<N>> strata{
+        {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
+         kShadowRayCost},
+        {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours), 1.0},
+        {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
+         kShadowRayCost}};
+    auto plans = plan_samples(problem_, weights_, strata, rest);
+    if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
+    for (Draw& d : plans[1]) d.more += gathered_.valid(d.side) / kReplicates;
+    direct_goals_ = goals_of(plans[0], direct_);
+    gather_goals_ = goals_of(plans[1], gathered_);
+    shot_goals_ = goals_of(plans[2], shot_);
+    refine_field(plans[1]);
+    stage_ = Stage::RoundLight;
+    return true;
+  }
+
+  /// Draws what is missing to the round. False if stopped; then the result is that of before.
+  bool finish_round() {
+    if (stage_ == Stage::RoundLight) {
+      work_.begin("direct light", 0.98);
+      draw_direct(missing(direct_goals_, direct_));
+      draw_hot(missing(shot_goals_, shot_));
+      if (paused(Stage::RoundLight)) return false;
+      const std::vector<GroupLight<N>> before = groups_;
+      take_direct();
+      solve_bounces();
+      if (work_.stopped()) {
+        groups_ = before;
+        return !paused(Stage::RoundLight);
+      }
+    }
+    work_.begin("gathering", 0.98);
+    draw_gather(missing(gather_goals_, gathered_));
+    if (paused(Stage::RoundGather)) return false;
+    assemble();
+    return !paused(Stage::RoundGather);
+  }
+
+  /// Twice as many photons, all of them new. False if stopped or at the end of their numbers.
   bool more_photons() {
     const std::uint64_t next = photons_.count * 2;
     if (next > 0xffffffffU) return false;
     work_.begin("caustics", 0.98);
-    photons_ = trace_photons(problem_, next, work_, counters_);
-    return !work_.stopped();
+    Photons<N> photons = trace_photons(problem_, next, work_, counters_);
+    if (work_.stopped()) {
+      keep();
+      return false;
+    }
+    photons_ = std::move(photons);
+    return true;
   }
 
   const Problem<N>& problem_;
@@ -529,18 +817,30 @@ class RowSolver {
   std::vector<float> exposed_;   ///< by side: share of its area outside closed bodies
   std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
   std::vector<double> weights_;  ///< of squared errors, by side
+  std::vector<Variances> group_variances_;  ///< if there are several groups
+
+  Stage stage_ = Stage::Light;
+  int round_ = 0;
+  std::vector<Goal> direct_goals_, shot_goals_, gather_goals_;
+  bool hot_chosen_ = false, hot_light_known_ = false;
+  std::vector<float> hot_reflectance_;  ///< that the solver before this one knew
+  std::vector<std::uint32_t> traced_;  ///< rays of each row of the solver before this one
+  bool caught_up_ = true;              ///< false: stopped before those were traced again
+  std::vector<char> state_;
 };
 
 }  // namespace
 
 template <int N>
-Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
+Solution<N> solve_with_rows(const Problem<N>& problem, Start<N> start, Work& work,
                             Counters& counters) {
-  return RowSolver<N>(problem, std::move(direct), work, counters).solve();
+  RowSolver<N> solver(problem, std::move(start.direct), work, counters);
+  if (start.state != nullptr) solver.restore(*start.state, start.same_light);
+  return solver.solve();
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Solution<N> solve_with_rows(const Problem<N>&, Tally<N>, Work&, Counters&);
+  template Solution<N> solve_with_rows(const Problem<N>&, Start<N>, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -2,13 +2,24 @@
 
 #include "iterate.h"
 #include "passes.h"
+#include "scene/archive.h"
 
 namespace atrium::radiosity {
+
+/// One light group's part of a solution, with variances of its own.
+template <int N>
+struct GroupEstimate {
+  Irradiance<N> direct, caustic, indirect;
+  std::vector<float> light_variance;     ///< of direct and caustic
+  std::vector<float> indirect_variance;
+};
 
 /// What a solver hands over: irradiance by side and how it got there.
 template <int N>
 struct Solution {
   Estimate<N> direct, caustic, indirect;
+  std::vector<GroupEstimate<N>> groups;  ///< whose sum the estimates are; empty with one group
+  std::vector<char> state;  ///< to go on from, if SolveOptions::keep says so
   std::vector<std::uint8_t> valid;  ///< by side
   FluxBalance flux;
   Iteration iteration;
@@ -21,9 +32,17 @@ struct Solution {
         valid(problem.sides.is_active) {}
 };
 
-/// \param direct  light samples of the problem's sides that were drawn already.
+/// What is known before.
 template <int N>
-[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
+struct Start {
+  Tally<N> direct;  ///< light samples of the problem's sides, or empty
+  scene::ArchiveReader* state = nullptr;  ///< Solution::state of the same elements
+  bool same_light = true;                 ///< false: reflectances have changed since
+};
+
+/// \throws Error  if the state is damaged.
+template <int N>
+[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Start<N> start, Work& work,
                                           scene::Counters& counters);
 /// \throws Error  if the scene has specular surfaces or more sides than a dense matrix can hold.
 template <int N>

@@ -119,6 +119,23 @@ class Tally {
     return variance_of_mean(sums, valid_[i]);
   }
 
+  /// For both directions, see scene/archive.h.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(sides_);
+    a(groups_);
+    a(plain_);
+    a(body_);
+    a(replicate_);
+    a(valid_);
+    a(drawn_);
+  }
+  [[nodiscard]] bool is_for(std::size_t sides, std::size_t groups, bool body) const {
+    return sides_ == sides && groups_ == groups && plain_.size() == sides * groups &&
+           body_.size() == (body ? plain_.size() : 0) && replicate_.size() == plain_.size() &&
+           valid_.size() == sides && drawn_.size() == sides;
+  }
+
  private:
   [[nodiscard]] Spectrum<N> per_sample(const Spectrum<N>& sum, SideIndex i) const {
     const std::uint32_t n = valid(i);

@@ -8,6 +8,7 @@
 #include "radiosity/elements.h"
 #include "scene/control.h"
 #include "scene/counters.h"
+#include "scene/light_groups.h"
 #include "scene/ray_query.h"
 #include "scene/surface_field.h"
 
@@ -17,6 +18,13 @@ enum class Solver {
   Rows,      ///< sparse hemisphere rows, solved at memory speed, then streamed gathering
   Shooting,  ///< classic progressive refinement (Cohen et al. 1988), point-to-polygon factors
   Matrix     ///< dense rows with many rays, solved directly (Eigen); reference for small scenes
+};
+
+/// What a solve hands over so that a later one can go on.
+enum class Keep {
+  Nothing,
+  Samples,  ///< sums of samples; rows are traced again
+  Rows      ///< and the rows, about 16 bytes per ray
 };
 
 struct SolveOptions {
@@ -38,6 +46,8 @@ struct SolveOptions {
   double tolerance = 1e-4;  ///< of the iteration, relative to the largest radiosity
   double time_limit = 0.0;  ///< [s]; 0: none
   std::uint64_t seed = 1;
+  Keep keep = Keep::Nothing;  ///< solver Rows only
+  scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
   bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
 };
 
@@ -53,7 +63,11 @@ struct FluxBalance {
 struct SolveResult {
   Elements elements;  ///< geometry of the elements (layout without values)
   scene::SurfaceField field;
-  scene::Counters counters;
+  std::vector<scene::GroupField> groups;  ///< whose sum the field is; empty with one group
+  /// To go on from with the field's elements; empty if not asked for, or stopped before there was
+  /// anything. For this version of the library.
+  std::vector<char> state;
+  scene::Counters counters;  ///< of this solve alone
   FluxBalance flux;
   double residual = 0.0;  ///< last change of radiosity, relative to its maximum
   int iterations = 0;
@@ -63,10 +77,33 @@ struct SolveResult {
   std::string stopped_by;  ///< "tolerance", "iterations", "time limit", "interrupt"
 };
 
+/// Where another solve left off.
+struct Previous {
+  const scene::SurfaceField& field;  ///< its elements
+  const std::vector<char>& state;
+};
+
 /// Solves diffuse inter-reflection, also through panes, mirrors, solids and rough lobes.
-/// \throws Error  if a closed enclosure reflects everything (no finite solution).
+/// \throws Error  if a closed enclosure reflects everything (no finite solution), or a solver that
+/// knows no light groups finds several.
 [[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
                                 const SolveOptions& options = {},
                                 const scene::Control& control = {});
+
+/// The same, going on from an earlier solve.
+///
+/// Of the same scene: an interrupted solve goes on where it was, and ends with the bits of one that
+/// was not interrupted (the chunk of samples, or the photons, that it was drawing are drawn again). A
+/// finished one takes the samples that a smaller SolveOptions::error needs.
+///
+/// Of a scene where only diffuse reflectances differ (scene::hash_scene_but_reflectance): elements,
+/// direct light, caustics and, if they were kept, rows stay. Rows are traced again if that concerns
+/// patches that were shot (their light is in the rows).
+///
+/// \throws Error  if the state is damaged or of another scene, another basis or other options than
+/// error, time_limit, tolerance, max_iterations and keep.
+[[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
+                                const SolveOptions& options, const scene::Control& control,
+                                const Previous& previous);
 
 }  // namespace atrium::radiosity

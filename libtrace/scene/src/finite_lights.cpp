@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "directions.h"
+#include "scene/light_groups.h"
 #include "spherical_triangle.h"
 
 namespace atrium::scene {
@@ -238,7 +239,7 @@ std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3
     s.wi = d / s.distance;
     s.radiance = intensity_towards(light, -s.wi) / distance2;
     s.dirac = true;
-    s.light = light.index;
+    s.source = light.index;
     return s;
   }
   const std::uint32_t index = choice->light - static_cast<std::uint32_t>(positional_.size());
@@ -248,7 +249,7 @@ std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3
   s.distance = place->distance;
   s.radiance = radiance_at(place->point);
   s.pdf *= place->pdf;
-  s.light = static_cast<std::uint32_t>(scene_->lights.size()) + index;
+  s.source = light_source(*scene_, triangles_[index].object);
   return s;
 }
 
@@ -293,6 +294,7 @@ EmissionSample<N> FiniteLights<N>::emission_of(const Positional& light, const Ve
   s.origin = light.position;
   s.direction = light.to_local.transpose() * Vec3f(local.x(), local.y(), -local.z());
   s.weight = intensity_towards(light, s.direction) * (2.0f * kPi * (1.0f - cos_max));
+  s.source = light.index;
   return s;
 }
 
@@ -311,6 +313,7 @@ EmissionSample<N> FiniteLights<N>::emission_of(const EmissiveTriangle& t, const 
   s.direction = Frame(Vec3f(side * q.ng)).to_world(sample_cosine_hemisphere(u));
   s.origin = offset_origin(q, s.direction);
   s.weight = radiance_at(q) * (kPi * t.area * (two_sided(t) ? 2.0f : 1.0f));
+  s.source = light_source(*scene_, t.object);
   return s;
 }
 

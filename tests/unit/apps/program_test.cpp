@@ -187,6 +187,36 @@ TEST_F(AtriumRun, QuietIsSilentAndThreadsDoNotChangeTheImage) {
   EXPECT_EQ(read_file(folder / "1.pfm"), read_file(folder / "2.pfm"));
 }
 
+TEST_F(AtriumRun, LightGroupsAreDimmedAndSolvesGoOn) {
+  folder.write("s.yaml", R"(atrium: 1
+materials: {white: {body: 0.5}}
+objects: [{name: room, box: {size: [4, 3, 4], inside: true}, material: white}]
+lights:
+  - {name: left, point: {position: [-1, 0.5, 0], intensity: 100}}
+  - {name: right, point: {position: [1, 0.5, 0], intensity: 50}}
+)");
+  const std::string rest = " --quality draft --quiet ";
+  const Result solve = run(folder, "solve s.yaml --light-groups --keep-rows -o s.atrium" + rest);
+  ASSERT_EQ(solve.code, 0) << solve.err;
+  const Result info = run(folder, "info s.atrium");
+  EXPECT_NE(info.out.find("  left\n  right\n"), std::string::npos) << info.out;
+  ASSERT_EQ(run(folder, "reweight s.atrium --set left=0 -o dim.atrium").code, 0);
+  EXPECT_NE(run(folder, "info dim.atrium").out.find("left x 0"), std::string::npos);
+  expect_error(run(folder, "reweight s.atrium --set middle=1 -o x.atrium"), 2, "'left', 'right'");
+  expect_error(run(folder, "reweight s.atrium --set left=-1 -o x.atrium"), 2, "left=-1");
+  expect_error(run(folder, "reweight s.atrium --set left -o x.atrium"), 2, "NAME=FACTOR");
+  expect_error(run(folder, "render s.yaml -o x.pfm --size 24x18 --solution dim.atrium"), 2, "dimmed");
+  // Nothing is left to do, so nothing changes.
+  const Result again =
+      run(folder, "solve s.yaml --light-groups --keep-rows --solution s.atrium -o t.atrium" + rest);
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(read_file(folder / "s.atrium"), read_file(folder / "t.atrium"));
+  expect_error(run(folder, "solve s.yaml --solution s.atrium -o u.atrium" + rest), 2, "go on from");
+  expect_error(run(folder, "solve s.yaml --solution dim.atrium -o u.atrium" + rest), 2, "go on from");
+  expect_error(run(folder, "solve s.yaml --solver matrix --light-groups -o u.atrium" + rest), 2,
+               "light groups");
+}
+
 TEST_F(AtriumRun, SolutionsAreReusedAndCheckedAgainstTheScene) {
   const std::string small = " --size 24x18 --samples 2 --quality draft --quiet ";
   const Result solve = run(folder, "solve a.obj -o a.atrium --quality draft --quiet");

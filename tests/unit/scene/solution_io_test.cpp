@@ -25,6 +25,7 @@ Solution sample_solution() {
   Solution s;
   s.scene_hash = 0x0123456789abcdefULL;
   s.basis = "3 RGB lanes";
+  s.state = {'a', '\0', 'b'};
   s.options = "solver rows";
   SurfaceField& f = s.field;
   f.lanes = 3;
@@ -66,6 +67,7 @@ TEST(SolutionIo, RoundTrip) {
   EXPECT_EQ(a.scene_hash, b.scene_hash);
   EXPECT_EQ(a.basis, b.basis);
   EXPECT_EQ(a.options, b.options);
+  EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.field.unit, b.field.unit);
   EXPECT_EQ(a.field.nodes, b.field.nodes);
   EXPECT_EQ(a.field.element_level, b.field.element_level);
@@ -160,6 +162,21 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   EXPECT_EQ(skies.size(), 5u);
   EXPECT_TRUE(changed([](Scene& s) { s.medium_extinction = 0.1; }));
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
+
+  using atrium::scene::hash_scene_but_reflectance;
+  scene.materials[0].medium = atrium::material::Material::Medium::Opaque;
+  scene.materials[0].k_df = 1.0;
+  scene.materials[0].k_rg = 0.0;
+  scene.materials[0].body_reflectance = 0.5;
+  Scene other = scene;
+  other.materials[0].body_reflectance = 0.4;
+  EXPECT_NE(hash_scene(other), hash_scene(scene));
+  EXPECT_EQ(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
+  other.materials[0].body_reflectance = 0.0;  // then there is no diffuse surface any more
+  EXPECT_NE(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
+  other = scene;
+  other.materials[0].emission = 1.0;
+  EXPECT_NE(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
 }
 
 }  // namespace
