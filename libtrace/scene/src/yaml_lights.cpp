@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "material/cie.h"
+#include "scene/luminaire.h"
 #include "yaml_scene.h"
 
 namespace atrium::scene {
@@ -98,7 +99,7 @@ Light read_luminaire(const YamlScene& scene, const YamlView& view) {
                                        "flux", "color", "falloff"});
   ProfileLight luminaire;
   const YamlView file = map.get("file");
-  luminaire.profile = read_ies(file.file());
+  luminaire.profile = atrium::scene::read_luminaire(file.file()).profile;
   luminaire.falloff = read_falloff(map);
   double scale = scene.unit == RadianceUnit::Watt ? 1.0 / material::kWhiteLumensPerWatt : 1.0;
   if (const auto flux = map.find("flux")) {
