@@ -83,6 +83,28 @@ TEST(AtriumMeasure, PointsFromAFile) {
   EXPECT_EQ(rows[0][10], 0.0);
 }
 
+// 100 cd per 1000 lm to all sides and lamps of 1000 lm: the same light from a EULUMDAT file.
+TEST(AtriumMeasure, LuminaireOfAEulumdatFile) {
+  const TempFolder folder;
+  std::string ldt =
+      "maker\n1\n1\n1\n0\n2\n180\n\nball\n\n\n\n100\n0\n100\n100\n0\n0\n0\n0\n0\n50\n100\n1\n0\n"
+      "1\n1\nLED\n1000\n\n\n10\n";
+  for (int i = 0; i < 10; ++i) ldt += "1\n";
+  folder.write("ball.ldt", ldt + "0\n0\n180\n100\n100\n");
+  std::string scene = kScene;
+  const std::string point = "point: {position: [1000, 2, 0], intensity: 100}";
+  scene.replace(scene.find(point), point.size(), "ies: {position: [1000, 2, 0], file: ball.ldt}");
+  folder.write("a.yaml", scene);
+  folder.write("p.txt", "1001 0 1 0 1 0\n");
+  const Result r = run(folder, "measure a.yaml --points p.txt --quiet");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NEAR(table(r.out).at(0)[6], lamp(1001, 0, 1), 1e-3);
+  const Result info = run(folder, "info ball.ldt --json");
+  ASSERT_EQ(info.code, 0) << info.err;
+  EXPECT_NE(info.out.find("\"flux\": 1256.637"), std::string::npos) << info.out;  // 400 pi
+  EXPECT_NE(info.out.find("\"symmetry\": \"round\""), std::string::npos) << info.out;
+}
+
 TEST(AtriumMeasure, GridAndWorkPlaneWithSummary) {
   const TempFolder folder;
   folder.write("a.yaml", kScene);
