@@ -389,7 +389,7 @@ struct Parser {
         ->type_name("X,Y,Z U V NxM");
     CLI::Option* plane =
         sub.add_option("--workplane", o.work_plane,
-                       "sensors that look up, at this height y [m] wherever there is a floor below")
+                       "sensors that look up, at this height y [m] in rooms: a floor below, a ceiling above")
             ->type_name("HEIGHT");
     sub.add_option("--spacing", o.spacing, "of the sensors of a work plane [m]")
         ->check(CLI::Range(1e-6, 1e6))

@@ -93,12 +93,16 @@ std::vector<radiosity::Sensor> work_plane_sensors(const LoadedScene& loaded, dou
       const Vec3f in_scene = (p - scene.origin).cast<float>();
       // From a little above: a work plane that lies in the floor has the floor below it.
       const Vec3f start = in_scene + Vec3f(0.0f, 1e-5f * static_cast<float>(size.norm()), 0.0f);
-      if (loaded.query->occluded({start, -Vec3f::UnitY()}, counters, scene::Counter::RaysProbe,
-                                 scene::kEverything))
+      const auto anything = [&](const Vec3f& direction) {
+        return loaded.query->occluded({start, direction}, counters, scene::Counter::RaysProbe,
+                                      scene::kEverything);
+      };
+      if (anything(-Vec3f::UnitY()) && anything(Vec3f::UnitY()))
         sensors.push_back({p, Vec3d::UnitY()});
     }
   if (sensors.empty())
-    throw Error("--workplane " + std::to_string(height) + ": nothing of the scene is below it");
+    throw Error("--workplane " + std::to_string(height) +
+                ": no place has a floor below and a ceiling above");
   return sensors;
 }
 

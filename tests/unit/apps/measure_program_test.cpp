@@ -24,6 +24,7 @@ materials:
   black: {body: 0}
 objects:
   - {polygon: [[998, 0, 2], [1002, 0, 2], [1002, 0, -2], [998, 0, -2]], material: black}
+  - {polygon: [[998, 3, -2], [1002, 3, -2], [1002, 3, 2], [998, 3, 2]], material: black}
   - {box: {min: [998, 0.1, -2], max: [999, 0.9, 2]}, material: black}
 lights:
   - {name: lamp, point: {position: [1000, 2, 0], intensity: 100}}
@@ -175,7 +176,7 @@ TEST(AtriumMeasure, WrongUseNamesTheOptionOrTheLine) {
   expect_error(run(folder, measure + "--grid 0,0,0 1,0,0 0,0,1 0x2"), 2, "0x2");
   expect_error(run(folder, measure + "--grid 0,0 1,0,0 0,0,1 2x2"), 2, "--grid");
   expect_error(run(folder, measure + "--points p.txt --spacing 1"), 2, "--spacing");
-  expect_error(run(folder, measure + "--workplane -1 --quiet"), 2, "nothing of the scene");
+  expect_error(run(folder, measure + "--workplane -1 --quiet"), 2, "no place has a floor");
   expect_error(run(folder, measure + "--workplane 1 -o a.txt"), 2, "a.txt");
   expect_error(run(folder, measure + "--workplane 1 -o none/a.csv"), 2, "none/a.csv");
   expect_error(run(folder, measure + "--workplane 1 --error 0"), 2, "--error");
