@@ -1,0 +1,69 @@
+// Runs the cases with known answers and writes docs/validation.md.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "material/error.h"
+#include "scene/output_file.h"
+#include "validation/report.h"
+
+namespace {
+
+constexpr const char* kUsage =
+    "validation [-o FOLDER] [--only TEXT]\n"
+    "  -o FOLDER    write validation.md there; otherwise it goes to standard output\n"
+    "  --only TEXT  cases with TEXT in their section or name\n";
+
+struct Options {
+  std::string folder, only;
+};
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if ((name != "-o" && name != "--only") || i + 1 >= argc) throw std::invalid_argument(kUsage);
+    (name == "-o" ? options.folder : options.only) = argv[++i];
+  }
+  return options;
+}
+
+std::vector<atrium::validation::CaseResult> run(const Options& options) {
+  std::vector<atrium::validation::CaseResult> results;
+  for (const atrium::validation::Case& c : atrium::validation::all_cases()) {
+    if ((c.section + ": " + c.name).find(options.only) == std::string::npos) continue;
+    std::fprintf(stderr, "%s: %s\n", c.section.c_str(), c.name.c_str());
+    results.push_back({c, atrium::validation::run(c)});
+  }
+  if (results.empty()) throw atrium::Error("no case has '" + options.only + "' in its name");
+  return results;
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  atrium::scene::OutputFile out(file);
+  std::ofstream(out.path()) << text;
+  out.commit();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Options options = parse(argc, argv);
+    const std::string text =
+        atrium::validation::report(run(options), "build/release/bin/validation -o docs");
+    if (options.folder.empty())
+      std::fputs(text.c_str(), stdout);
+    else
+      write(std::filesystem::path(options.folder) / "validation.md", text);
+    return 0;
+  } catch (const std::invalid_argument& e) {
+    std::fputs(e.what(), stderr);
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "validation: %s\n", e.what());
+    return 1;
+  }
+}
