@@ -1,41 +1,16 @@
 #include "validation/l_room.h"
 
 #include <array>
-#include <numbers>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "validation/reference.h"
+
 namespace atrium::validation {
 namespace {
 
-using Polygon = std::vector<Vec3d>;
-
-/// The part of a polygon where offset + normal . x >= 0.
-Polygon clip(const Polygon& in, const Vec3d& normal, double offset) {
-  Polygon out;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const Vec3d& a = in[i];
-    const Vec3d& b = in[(i + 1) % in.size()];
-    const double da = normal.dot(a) + offset, db = normal.dot(b) + offset;
-    if (da >= 0.0) out.push_back(a);
-    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) out.push_back(a + da / (da - db) * (b - a));
-  }
-  return out;
-}
-
-/// Lambert 1760 for a polygon above the horizon that faces p.
-double point_factor(const Vec3d& p, const Vec3d& normal, const Polygon& polygon) {
-  const Polygon above = clip(polygon, normal, -normal.dot(p));
-  double sum = 0.0;
-  for (std::size_t i = 0; i < above.size(); ++i) {
-    const Vec3d a = (above[i] - p).normalized(), b = (above[(i + 1) % above.size()] - p).normalized();
-    const Vec3d cross = a.cross(b);
-    const double sine = cross.norm();
-    if (sine > 1e-15) sum += std::atan2(sine, a.dot(b)) * cross.dot(normal) / sine;
-  }
-  return std::abs(sum) / (2.0 * std::numbers::pi);
-}
+using reference::Polygon;
 
 /// What the inner corner, the vertical edge at (1, 1), leaves visible from p of a rectangle that
 /// lies wholly in one of the arms or in the corner square.
@@ -47,7 +22,7 @@ Polygon visible_part(const Vec3d& p, const Polygon& rectangle) {
   // The vertical plane through p and the edge; the room's outer corner (0, 0) is on the free side.
   Vec3d normal(p.y() - 1.0, 1.0 - p.x(), 0.0);
   const double offset = -normal.dot(Vec3d(1.0, 1.0, 0.0));
-  return offset >= 0.0 ? clip(rectangle, normal, offset) : clip(rectangle, -normal, -offset);
+  return offset >= 0.0 ? reference::clip(rectangle, normal, offset) : reference::clip(rectangle, -normal, -offset);
 }
 
 Vec3d normal_of(const Polygon& p) { return (p[1] - p[0]).cross(p[2] - p[0]).normalized(); }
@@ -67,7 +42,7 @@ double exchange_area(const Polygon& from, const Polygon& to) {
       const Vec3d p = from[0] + s * u + t * v;
       if (facing.dot(p - to[0]) <= 1e-12) continue;
       sum += kWeight[static_cast<std::size_t>(i % 3)] * kWeight[static_cast<std::size_t>(j % 3)] *
-             point_factor(p, normal, visible_part(p, to));
+             reference::point_factor(p, normal, visible_part(p, to));
     }
   return sum * u.cross(v).norm() / (kPanels * kPanels);
 }

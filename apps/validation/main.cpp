@@ -1,5 +1,6 @@
 // Runs the cases with known answers and writes docs/validation.md.
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -34,8 +35,10 @@ std::vector<atrium::validation::CaseResult> run(const Options& options) {
   std::vector<atrium::validation::CaseResult> results;
   for (const atrium::validation::Case& c : atrium::validation::all_cases()) {
     if ((c.section + ": " + c.name).find(options.only) == std::string::npos) continue;
-    std::fprintf(stderr, "%s: %s\n", c.section.c_str(), c.name.c_str());
+    const std::clock_t start = std::clock();
     results.push_back({c, atrium::validation::run(c)});
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    std::fprintf(stderr, "%s: %s (%.1f s of processor time)\n", c.section.c_str(), c.name.c_str(), seconds);
   }
   if (results.empty()) throw atrium::Error("no case has '" + options.only + "' in its name");
   return results;

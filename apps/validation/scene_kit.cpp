@@ -1,6 +1,7 @@
 #include "validation/scene_kit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -120,6 +121,19 @@ void SceneKit::sphere(const std::string& prefix, std::span<const MaterialId> zon
 void SceneKit::point_light(const Vec3d& position, double intensity) {
   scene::Light light;
   light.kind = scene::PointLight{.intensity = intensity, .falloff = {}};
+  light.to_scene.translation() = position;
+  model_.lights.push_back(light);
+}
+
+void SceneKit::lambertian_light(const Vec3d& position, double intensity_0) {
+  scene::ProfileLight lamp;
+  lamp.profile.phi_deg = {0.0};
+  for (int i = 0; i <= 360; ++i) {
+    lamp.profile.theta_deg.push_back(i / 4.0);
+    lamp.profile.candela.push_back(intensity_0 * std::cos(i / 4.0 * std::numbers::pi / 180.0));
+  }
+  scene::Light light;
+  light.kind = lamp;
   light.to_scene.translation() = position;
   model_.lights.push_back(light);
 }

@@ -8,10 +8,10 @@
 
 namespace atrium::validation {
 
-/// Makes small scenes in watts from named surfaces.
+/// Makes small scenes from named surfaces.
 class SceneKit {
  public:
-  SceneKit() { model_.unit = scene::RadianceUnit::Watt; }
+  explicit SceneKit(scene::RadianceUnit unit = scene::RadianceUnit::Watt) { model_.unit = unit; }
 
   scene::MaterialId material(material::Material m);
   /// Lambertian on both sides; `exitance` [W/m^2] leaves the front.
@@ -39,6 +39,8 @@ class SceneKit {
               int levels, bool seen_from_inside);
 
   void point_light(const Vec3d& position, double intensity);
+  /// Looks down; intensity_0 cos(theta) [cd], tabulated so finely that interpolation adds 3e-6.
+  void lambertian_light(const Vec3d& position, double intensity_0);
   /// \param towards  unit, to the light. \param irradiance  on a plane that faces it.
   void directional_light(const Vec3d& towards, double irradiance);
 

@@ -1,5 +1,6 @@
 #include "validation/solution.h"
 
+#include <span>
 #include <stdexcept>
 
 namespace atrium::validation {
@@ -36,7 +37,8 @@ Vec3d Solution::centre(std::size_t element) const {
   Vec3d sum = Vec3d::Zero();
   double weight = 0.0;
   for (std::uint32_t p = e.first_piece[element]; p < e.first_piece[element + 1]; ++p) {
-    const std::vector<Vec3f>& c = e.pieces[p].corners;
+    const auto& piece = e.pieces[p];
+    const std::span<const Vec3f> c = piece.corners;
     for (std::size_t k = 1; k + 1 < c.size(); ++k) {
       const Vec3d a = c[0].cast<double>(), b = c[k].cast<double>(), d = c[k + 1].cast<double>();
       const double twice_area = (b - a).cross(d - a).norm();
