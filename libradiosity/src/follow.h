@@ -9,7 +9,9 @@ namespace atrium::radiosity {
 /// What a path does besides reaching diffuse surfaces.
 template <int N>
 struct PathEnd {
-  Spectrum<N> escaped;        ///< weight that left the scene
+  Spectrum<N> escaped;              ///< weight that left the scene
+  Vec3f direction = Vec3f::Zero();  ///< ... in this direction
+  bool specular = false;            ///< the path met more than straight passages through panes
   bool inside_solid = false;  ///< the first surface was the inner face of a closed opaque body
 };
 
@@ -42,25 +44,34 @@ class MediumStack {
   std::array<Spectrum<N>, 4> extinction_;
 };
 
+/// For paths that do not care about surfaces as such.
+struct IgnoreSurface {
+  template <class... Arguments>
+  void operator()(Arguments&&...) const {}
+};
+
 /// Follows light from a diffuse surface (or from a light, Transport::Flux) through panes, mirrors,
 /// solids and lobes. At every surface that scatters diffusely on_diffuse(interaction, local wo,
 /// weight, specular) takes the whole weight; where the surface also has a specular part the path
 /// goes on with that, chosen by sampling, with Russian roulette for weak paths.
 /// \param specular  set once the path met more than straight passages through panes.
-template <int N, class OnDiffuse>
-PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
-                  scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
-                  scene::Counters& counters, OnDiffuse&& on_diffuse) {
+/// \param problem  has `shading` and `sides.closed_opaque`.
+/// \param on_surface  (interaction, weight, specular) at every surface, before its part in light.
+template <int N, class World, class OnDiffuse, class OnSurface = IgnoreSurface>
+PathEnd<N> follow(const World& problem, scene::Ray ray, Spectrum<N> weight, scene::Sampler& sampler,
+                  material::Transport transport, scene::Counter kind, scene::Counters& counters,
+                  OnDiffuse&& on_diffuse, OnSurface&& on_surface = {}) {
   constexpr int kMaxDepth = 256;  // only total reflection without loss gets near
   const scene::Shading<N>& shading = problem.shading;
   PathEnd<N> end;
   MediumStack<N> media;
-  bool specular = false;
+  bool& specular = end.specular;
   for (int depth = 0; depth < kMaxDepth; ++depth) {
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
       end.escaped = weight;
+      end.direction = ray.direction;
       return end;
     }
     if (!media.empty()) weight *= exp_minus(media.extinction(), distance);
@@ -71,6 +82,7 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
       end.inside_solid = true;
       return end;
     }
+    on_surface(at, weight, specular);
     const Vec3f wo = at.to_local(wo_world);
     if (at.bsdf.has(material::kDiffuseEvents)) on_diffuse(at, wo, weight, specular);
     if (!at.bsdf.has(material::kSpecularEvents)) return end;

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "light_tree.h"
+#include "scene/spherical_triangle.h"
 #include "sky_sampler.h"
-#include "spherical_triangle.h"
 
 namespace atrium::scene {
 namespace {
@@ -53,12 +53,6 @@ Vec2f uniform_triangle(const Vec2f& u) {  // barycentrics of corners 1 and 2
   const float s = std::sqrt(u.x());
   return {s * (1.0f - u.y()), s * u.y()};
 }
-
-struct EmissiveTriangle {
-  ObjectId object;
-  std::uint32_t triangle;
-  float area;
-};
 
 }  // namespace
 
@@ -355,6 +349,25 @@ struct LightSampler<N>::Impl {
     return place;
   }
 
+  // Everything of a sample but its density; false at the light's own place.
+  bool aim(const Positional& light, const Vec3f& p, LightSample<N>& s) const {
+    const Vec3f d = light.position - p;
+    const float distance2 = d.squaredNorm();
+    if (!(distance2 > 0.0f)) return false;
+    s.distance = std::sqrt(distance2);
+    s.wi = d / s.distance;
+    s.radiance = intensity_towards(light, -s.wi) / distance2;
+    s.dirac = true;
+    s.light = light.index;
+    return true;
+  }
+  void aim(const Directional& sun, LightSample<N>& s) const {
+    s.distance = std::numeric_limits<float>::infinity();
+    s.wi = sun.direction;
+    s.radiance = sun.irradiance;
+    s.dirac = true;
+  }
+
   std::optional<LightSample<N>> sample_finite(const Vec3f& p, const Vec3f& normal, float u_choice,
                                               const Vec2f& u, float group_probability) const {
     const auto choice = tree.choose(p, normal, u_choice);
@@ -362,15 +375,7 @@ struct LightSampler<N>::Impl {
     LightSample<N> s;
     s.pdf = choice->probability * group_probability;
     if (choice->light < positional.size()) {
-      const Positional& light = positional[choice->light];
-      const Vec3f d = light.position - p;
-      const float distance2 = d.squaredNorm();
-      if (!(distance2 > 0.0f)) return std::nullopt;
-      s.distance = std::sqrt(distance2);
-      s.wi = d / s.distance;
-      s.radiance = intensity_towards(light, -s.wi) / distance2;
-      s.dirac = true;
-      s.light = light.index;
+      if (!aim(positional[choice->light], p, s)) return std::nullopt;
       return s;
     }
     const std::uint32_t index = choice->light - static_cast<std::uint32_t>(positional.size());
@@ -408,24 +413,53 @@ std::optional<LightSample<N>> LightSampler<N>::sample(const Vec3f& p, const Vec3
   const float x = u_choice * static_cast<float>(groups);
   const auto group = std::min(static_cast<std::size_t>(x), groups - 1);
   const float probability = 1.0f / static_cast<float>(groups);
-  LightSample<N> s;
-  s.distance = std::numeric_limits<float>::infinity();
   if (group < m.suns.size()) {
-    s.wi = m.suns[group].direction;
-    s.radiance = m.suns[group].irradiance;
+    LightSample<N> s;
+    m.aim(m.suns[group], s);
     s.pdf = probability;
-    s.dirac = true;
     return s;
   }
   if (group == m.suns.size() && m.has_sky()) {
-    s.wi = m.sample_sky(normal, u);
-    s.pdf = m.sky_pdf(normal, s.wi) * probability;
-    s.radiance = m.sky_radiance(s.wi);
-    if (!(s.pdf > 0.0f)) return std::nullopt;
+    auto s = sample_sky(normal, u);
+    if (s) s->pdf *= probability;
     return s;
   }
   return m.sample_finite(p, normal, std::min(x - static_cast<float>(group), 0x1.fffffep-1f), u,
                          probability);
+}
+
+template <int N>
+std::span<const EmissiveTriangle> LightSampler<N>::surfaces() const {
+  return impl_->triangles;
+}
+
+template <int N>
+std::size_t LightSampler<N>::dirac_count() const {
+  return impl_->positional.size() + impl_->suns.size();
+}
+
+template <int N>
+std::optional<LightSample<N>> LightSampler<N>::dirac(std::size_t i, const Vec3f& p) const {
+  LightSample<N> s;
+  s.pdf = 1.0f;
+  if (i >= impl_->positional.size())
+    impl_->aim(impl_->suns[i - impl_->positional.size()], s);
+  else if (!impl_->aim(impl_->positional[i], p, s))
+    return std::nullopt;
+  return s;
+}
+
+template <int N>
+std::optional<LightSample<N>> LightSampler<N>::sample_sky(const Vec3f& normal,
+                                                          const Vec2f& u) const {
+  if (!impl_->has_sky()) return std::nullopt;
+  LightSample<N> s;
+  s.distance = std::numeric_limits<float>::infinity();
+  s.wi = impl_->sample_sky(normal, u);
+  s.pdf = impl_->sky_pdf(normal, s.wi);
+  s.radiance = impl_->sky_radiance(s.wi);
+  if (!(s.pdf > 0.0f)) return std::nullopt;
+  return s;
 }
 
 template <int N>
