@@ -86,8 +86,8 @@ std::vector<Finding> run(const Case& c) {
 
 std::vector<Case> all_cases() {
   std::vector<Case> all;
-  for (const auto& part : {form_factor_cases(), enclosure_cases(), specular_cases(),
-                           cie171_cases(), convergence_cases()})
+  for (const auto& part : {form_factor_cases(), enclosure_cases(), specular_cases(), cie171_cases(),
+                           convergence_cases()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -32,9 +32,8 @@ std::string text(double x) {
 /// Illuminance at sensors in a scene whose surfaces' light is `field`.
 std::vector<double> readings(const scene::RayQuery& query, const scene::SurfaceField& field,
                              const std::vector<Sensor>& sensors, std::uint64_t seed) {
-  const radiosity::MeasureResult result =
-      radiosity::measure(query, material::SpectralBasis::grey(), field, sensors,
-                         {.error = 0.002, .seed = seed});
+  const radiosity::MeasureResult result = radiosity::measure(
+      query, material::SpectralBasis::grey(), field, sensors, {.error = 0.002, .seed = seed});
   std::vector<double> values;
   for (const radiosity::Reading& r : result.readings) values.push_back(r.total.y);
   return values;
@@ -50,10 +49,19 @@ const std::vector<double> kWallHeights{2.75, 2.25, 1.75, 1.25, 0.75, 0.25};
 Case point_source() {
   Case c = cie("5.2 point source, Lambertian, 1000 cd, 3 m over the floor", "E = I0 h^2 / d^4", 1);
   std::vector<Sensor> sensors;
-  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}, {1.5, 0.0}, {0.5, 0.5},
-                             {1.0, 0.5}, {1.5, 0.5}, {1.0, 1.0}, {1.5, 1.0}, {1.5, 1.5}}) {
+  for (const auto& [x, y] : {std::pair{0.0, 0.0},
+                             {0.5, 0.0},
+                             {1.0, 0.0},
+                             {1.5, 0.0},
+                             {0.5, 0.5},
+                             {1.0, 0.5},
+                             {1.5, 0.5},
+                             {1.0, 1.0},
+                             {1.5, 1.0},
+                             {1.5, 1.5}}) {
     const double d2 = x * x + y * y + 9;
-    c.quantities.push_back({"E(" + text(x) + ", " + text(y) + ") [lx]", 9000 / (d2 * d2), Kind::Point});
+    c.quantities.push_back(
+        {"E(" + text(x) + ", " + text(y) + ") [lx]", 9000 / (d2 * d2), Kind::Point});
     sensors.push_back({{x, y, 0}, {0, 0, 1}});
   }
   c.measure = [sensors](std::uint64_t) {
@@ -96,7 +104,8 @@ Case flux_conservation() {
     SceneKit kit(kLux);
     kit.room({0, 0, 0}, {4, 4, 3}, kit.diffuse(1e-6));  // black surfaces have no elements
     kit.point_light({2, 2, 2}, 10000 / (4 * kPi));
-    const Solution s(kit.build(), {.element_size = 0.25, .row_rays = 16, .gather_rays = 16, .seed = seed});
+    const Solution s(kit.build(),
+                     {.element_size = 0.25, .row_rays = 16, .gather_rays = 16, .seed = seed});
     return std::vector{s.sum("", Part::Direct).flux};
   };
   return c;
@@ -106,7 +115,8 @@ Case flux_conservation() {
 /// faces added up without interference: T = (1 - R) / (1 + R).
 double pane_transmittance(double n, double degrees) {
   const double c = std::cos(degrees * kPi / 180), t = std::sqrt(1 - (1 - c * c) / (n * n));
-  const double s = std::pow((c - n * t) / (c + n * t), 2), p = std::pow((n * c - t) / (n * c + t), 2);
+  const double s = std::pow((c - n * t) / (c + n * t), 2),
+               p = std::pow((n * c - t) / (n * c + t), 2);
   return 0.5 * ((1 - s) / (1 + s) + (1 - p) / (1 + p));
 }
 
@@ -116,7 +126,8 @@ Case glass() {
                "incoherent slab, T = (1 - R) / (1 + R) per polarisation, then averaged", 1);
   const std::vector<double> angles{0, 10, 20, 30, 40, 50, 60, 70, 80};
   for (const double a : angles)
-    c.quantities.push_back({"T at " + text(a) + " deg", pane_transmittance(kIndex, a), Kind::Point});
+    c.quantities.push_back(
+        {"T at " + text(a) + " deg", pane_transmittance(kIndex, a), Kind::Point});
   c.measure = [angles](std::uint64_t) {
     std::vector<double> values;
     for (const double a : angles) {
@@ -125,7 +136,8 @@ Case glass() {
         const auto floor = kit.diffuse(0.0);
         kit.polygon("floor", floor, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
         if (with_pane)
-          kit.polygon("pane", kit.pane(kIndex, 1.0), {{-9, -9, 1}, {9, -9, 1}, {9, 9, 1}, {-9, 9, 1}});
+          kit.polygon("pane", kit.pane(kIndex, 1.0),
+                      {{-9, -9, 1}, {9, -9, 1}, {9, 9, 1}, {-9, 9, 1}});
         const double angle = a * kPi / 180;
         kit.directional_light({std::sin(angle), 0, std::cos(angle)}, 1000.0);
         return readings(kit.build(), {{{0, 0, 0}, {0, 0, 1}}})[0];
@@ -149,8 +161,10 @@ Case diffuse_reflection() {
     c.quantities.push_back({name, 100 * reference::point_factor(p, n, ground), Kind::Point});
     sensors.push_back({p, n});
   };
-  for (const double z : {0.75, 1.25, 1.75, 2.25, 2.75}) add("wall, z = " + text(z), {2, 0, z}, {0, 1, 0});
-  for (const double y : {0.25, 0.75, 1.25, 1.75}) add("ceiling, y = " + text(y), {2, y, 3}, {0, 0, -1});
+  for (const double z : {0.75, 1.25, 1.75, 2.25, 2.75})
+    add("wall, z = " + text(z), {2, 0, z}, {0, 1, 0});
+  for (const double y : {0.25, 0.75, 1.25, 1.75})
+    add("ceiling, y = " + text(y), {2, y, 3}, {0, 0, -1});
   c.measure = [sensors, ground](std::uint64_t seed) {
     SceneKit kit(kLux);
     const auto black = kit.diffuse(0.0);
@@ -178,16 +192,20 @@ Polygon above_obstruction(const Vec3d& p) {
 
 Case obstruction() {
   constexpr double kRho = 0.6;
-  Case c = cie("5.7 reflection by a diffuse wall past an obstruction (rho 0.6)",
-               "E / (E_v rho) = F of the part above the shadow line, in %; the report's Table 19 is wrong", 8);
+  Case c = cie(
+      "5.7 reflection by a diffuse wall past an obstruction (rho 0.6)",
+      "E / (E_v rho) = F of the part above the shadow line, in %; the report's Table 19 is wrong",
+      8);
   std::vector<Sensor> sensors;
   const auto add = [&](const std::string& name, const Vec3d& p, const Vec3d& n) {
     // Errors of dark points count against a tenth of the brightest.
-    c.quantities.push_back({name, 100 * reference::point_factor(p, n, above_obstruction(p)), Kind::Point, 1.6});
+    c.quantities.push_back(
+        {name, 100 * reference::point_factor(p, n, above_obstruction(p)), Kind::Point, 1.6});
     sensors.push_back({p, n});
   };
   for (const double z : kWallHeights) add("wall, z = " + text(z), {2, 0, z}, {0, 1, 0});
-  for (const double y : {0.25, 0.75, 1.25, 1.75, 2.25}) add("floor, y = " + text(y), {2, y, 0}, {0, 0, 1});
+  for (const double y : {0.25, 0.75, 1.25, 1.75, 2.25})
+    add("floor, y = " + text(y), {2, y, 0}, {0, 0, 1});
   c.measure = [sensors](std::uint64_t seed) {
     SceneKit kit(kLux);
     const auto black = kit.diffuse(0.0);
@@ -212,7 +230,8 @@ Case interreflection() {
                "mean indirect E = rho Phi / (A (1 - rho)), exact as area mean", 8);
   const std::vector<double> reflectances{0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95};
   for (const double rho : reflectances)
-    c.quantities.push_back({"mean indirect E, rho = " + text(rho) + " [lx]", rho * 10000 / (96 * (1 - rho))});
+    c.quantities.push_back(
+        {"mean indirect E, rho = " + text(rho) + " [lx]", rho * 10000 / (96 * (1 - rho))});
   c.measure = [reflectances](std::uint64_t seed) {
     std::vector<double> values;
     for (const double rho : reflectances) {

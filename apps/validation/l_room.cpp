@@ -22,7 +22,8 @@ Polygon visible_part(const Vec3d& p, const Polygon& rectangle) {
   // The vertical plane through p and the edge; the room's outer corner (0, 0) is on the free side.
   Vec3d normal(p.y() - 1.0, 1.0 - p.x(), 0.0);
   const double offset = -normal.dot(Vec3d(1.0, 1.0, 0.0));
-  return offset >= 0.0 ? reference::clip(rectangle, normal, offset) : reference::clip(rectangle, -normal, -offset);
+  return offset >= 0.0 ? reference::clip(rectangle, normal, offset)
+                       : reference::clip(rectangle, -normal, -offset);
 }
 
 Vec3d normal_of(const Polygon& p) { return (p[1] - p[0]).cross(p[2] - p[0]).normalized(); }

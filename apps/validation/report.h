@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "validation/case.h"
+#include "validation/convergence.h"
 
 namespace atrium::validation {
 
@@ -12,7 +13,9 @@ struct CaseResult {
   std::vector<Finding> findings;
 };
 
-/// Results as Markdown: summary, one table per section.
-[[nodiscard]] std::string report(const std::vector<CaseResult>& results, const std::string& command);
+/// Results as Markdown: summary, one table per case, the figures' numbers with links to
+/// FOLDER/images.
+[[nodiscard]] std::string report(const std::vector<CaseResult>& results,
+                                 const std::vector<Figure>& figures, const std::string& command);
 
 }  // namespace atrium::validation

@@ -107,9 +107,9 @@ void SceneKit::sphere(const std::string& prefix, std::span<const MaterialId> zon
   std::vector<std::vector<scene::Triangle>> parts(zones.size());
   for (scene::Triangle triangle : t) {
     const double z = (p[triangle[0]] + p[triangle[1]] + p[triangle[2]]).z() / 3.0;
-    const auto zone = static_cast<std::size_t>(
-        std::clamp(0.5 * (1.0 - z) * static_cast<double>(zones.size()), 0.0,
-                   static_cast<double>(zones.size()) - 0.5));
+    const auto zone =
+        static_cast<std::size_t>(std::clamp(0.5 * (1.0 - z) * static_cast<double>(zones.size()),
+                                            0.0, static_cast<double>(zones.size()) - 0.5));
     if (seen_from_inside) std::swap(triangle[1], triangle[2]);
     parts[zone].push_back(triangle);
   }

@@ -22,7 +22,8 @@ struct Corridor {
 };
 void build(SceneKit& kit, const Corridor& c) {
   const auto mirror = kit.perfect_mirror();
-  kit.room({0, 0, 0}, {2, 1, 1}, {kit.diffuse(c.rho0, 1.0), kit.diffuse(c.rho1), mirror, mirror, mirror, mirror});
+  kit.room({0, 0, 0}, {2, 1, 1},
+           {kit.diffuse(c.rho0, 1.0), kit.diffuse(c.rho1), mirror, mirror, mirror, mirror});
 }
 const std::vector<Vec3d> kMiddle{{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}};
 
@@ -34,7 +35,8 @@ Case parallel_planes() {
   Case c = specular("infinite parallel planes: a corridor of four mirrors",
                     "B1 = (M1 + rho1 M2) / (1 - rho1 rho2)");
   for (const auto& [r0, r1] : {std::pair{0.5, 0.8}, {0.9, 0.9}}) {
-    const std::string rho = ", rho = " + std::to_string(r0).substr(0, 3) + ", " + std::to_string(r1).substr(0, 3);
+    const std::string rho =
+        ", rho = " + std::to_string(r0).substr(0, 3) + ", " + std::to_string(r1).substr(0, 3);
     const double b = 1 / (1 - r0 * r1);
     c.quantities.push_back({"B of the emitter" + rho, b});
     c.quantities.push_back({"B opposite" + rho, r1 * b});
@@ -85,7 +87,8 @@ Case window(const std::string& name, double n, double tint, const Corridor& corr
   Case c = specular("two half-rooms behind a window, " + name,
                     n > 1.0 ? "2 x 2 system, diffuse R and T by quadrature of Fresnel's equations"
                             : "2 x 2 system");
-  c.quantities = {{"E in the lit half", expected.e0, Kind::Global, expected.e1}, {"E behind the window", expected.e1}};
+  c.quantities = {{"E in the lit half", expected.e0, Kind::Global, expected.e1},
+                  {"E behind the window", expected.e1}};
   c.measure = [n, tint, corridor](std::uint64_t seed) {
     SceneKit kit;
     build(kit, corridor);
@@ -103,7 +106,8 @@ Case diffuse_sheet() {
   static constexpr Corridor kCorridor{0.4, 0.7};
   const double k = kCorridor.rho1 * kTau / (1 - kCorridor.rho1 * kRho);
   const double ea = 1 / (1 - kCorridor.rho0 * (kRho + kTau * k)), eb = k * ea;
-  Case c = specular("diffuse sheet (rho 0.3, tau 0.5) between plates, mirrors as side walls", "4 x 4 system");
+  Case c = specular("diffuse sheet (rho 0.3, tau 0.5) between plates, mirrors as side walls",
+                    "4 x 4 system");
   c.quantities = {{"E of the sheet towards the lamp", ea},
                   {"E of the sheet, other side", eb},
                   {"E of the lamp", kRho * ea + kTau * eb},
@@ -127,8 +131,11 @@ Case mirror_wall() {
                   {"wall opposite the mirror", 1.0},
                   {"RMS over elements of E / doubled - 1", 0.02, Kind::AtMost}};
   c.measure = [](std::uint64_t seed) {
-    radiosity::SolveOptions options{.element_size = 0.5, .gather_rays = 256, .direct_samples = 64,
-                                    .caustic_photons = 400000, .seed = seed};
+    radiosity::SolveOptions options{.element_size = 0.5,
+                                    .gather_rays = 256,
+                                    .direct_samples = 64,
+                                    .caustic_photons = 400000,
+                                    .seed = seed};
     SceneKit half;
     const auto white = half.diffuse(0.6), mirror = half.perfect_mirror();
     half.room({0, 0, 0}, {2, 2, 2}, {mirror, white, white, white, white, white});
@@ -151,7 +158,8 @@ Case mirror_wall() {
       for (std::size_t k = 0; k < b.element_count(); ++k) {
         if ((a.centre(i) - b.centre(k)).norm() > 1e-3) continue;
         const double e = a.irradiance(i, Part::Total), f = b.irradiance(k, Part::Total);
-        for (Flux* sum : {&all, a.object_name(i) == "z0" ? &floor : nullptr, a.object_name(i) == "x1" ? &opposite : nullptr})
+        for (Flux* sum : {&all, a.object_name(i) == "z0" ? &floor : nullptr,
+                          a.object_name(i) == "x1" ? &opposite : nullptr})
           if (sum != nullptr) {
             sum->here += a.area(i) * e;
             sum->there += a.area(i) * f;
@@ -167,10 +175,8 @@ Case mirror_wall() {
 }  // namespace
 
 std::vector<Case> specular_cases() {
-  return {parallel_planes(), mirror_wall(),
-          window("transmittance 0.6", 1.0, 0.6, {0.5, 0.8}),
-          window("clear glass, n = 1.52", 1.52, 1.0, {0.5, 0.8}),
-          diffuse_sheet()};
+  return {parallel_planes(), mirror_wall(), window("transmittance 0.6", 1.0, 0.6, {0.5, 0.8}),
+          window("clear glass, n = 1.52", 1.52, 1.0, {0.5, 0.8}), diffuse_sheet()};
 }
 
 }  // namespace atrium::validation

@@ -45,7 +45,9 @@ TEST(StudentT, MatchesTables) {
 
 // The judge itself fails what is off.
 TEST(Judgement, RefusesWhatIsOff) {
-  Case c{"test", "biased", "", {{"far", 1.0}, {"significant", 1.0}, {"fine", 1.0}, {"bound", 1.0, Kind::AtMost}}, 8, {}};
+  Case c{"test", "biased",
+         "",     {{"far", 1.0}, {"significant", 1.0}, {"fine", 1.0}, {"bound", 1.0, Kind::AtMost}},
+         8,      {}};
   c.measure = [](std::uint64_t seed) {
     const double noise = seed % 2 == 0 ? 1.0 : -1.0;
     return std::vector{1.01 + 0.02 * noise, 1.002 + 1e-4 * noise, 1.002 + 0.01 * noise, 1.1};
