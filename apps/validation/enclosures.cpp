@@ -62,7 +62,7 @@ Case furnace_exact() {
 }
 
 Case furnace_sampled() {
-  Case c = enclosure("furnace: all surfaces emit M = 1", "B = M / (1 - rho)", 8);
+  Case c = enclosure("furnace: all surfaces emit M = 1", "B = M / (1 - rho)", 4);
   for (const char* solver : {"rows", "shooting"})
     for (const double rho : {0.2, 0.5, 0.9})
       c.quantities.push_back(
@@ -88,7 +88,7 @@ Case furnace_sampled() {
 Case closed_room() {
   const std::vector<double> reflectances{0.3, 0.7, 0.9};
   Case c =
-      enclosure("closed furnished room, uniform rho", "mean E = Phi / (A (1 - rho)), any light", 8);
+      enclosure("closed furnished room, uniform rho", "mean E = Phi / (A (1 - rho)), any light", 4);
   for (const char* solver : {"rows", "shooting", "matrix"})
     for (const double rho : reflectances)
       c.quantities.push_back(
