@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "radiosity/solve.h"
+
+namespace atrium::measure {
+
+/// One way to solve, with its name in the tables.
+struct Variant {
+  std::string name;
+  radiosity::SolveOptions options;
+};
+
+/// Rows with `scale` times the default rays of every kind.
+[[nodiscard]] Variant rows_variant(double scale);
+
+/// All numbers of rays multiplied.
+[[nodiscard]] radiosity::SolveOptions with_more_rays(radiosity::SolveOptions options,
+                                                     double factor);
+
+/// What is measured for coverage: the default, its parts alone, and a large budget.
+[[nodiscard]] std::vector<Variant> coverage_variants();
+
+}  // namespace atrium::measure
