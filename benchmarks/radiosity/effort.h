@@ -7,7 +7,7 @@ namespace atrium::measure {
 class Effort {
  public:
   Effort();
-  [[nodiscard]] double cpu_seconds() const;   ///< user and system, all threads
+  [[nodiscard]] double cpu_seconds() const;  ///< user and system, all threads
   [[nodiscard]] double wall_seconds() const;
   /// [MB] of the whole process, scene and ray queries included. Where the system does not allow
   /// the mark to be reset: since the process started.

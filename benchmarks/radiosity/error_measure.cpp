@@ -9,14 +9,27 @@
 namespace atrium::measure {
 namespace {
 
-double weighted_quantile(std::vector<std::pair<double, double>> value_weight, double share) {
-  std::sort(value_weight.begin(), value_weight.end());
-  double total = 0.0;
-  for (const auto& [v, w] : value_weight) total += w;
+/// An |e| with its share of the weights and of the reference's variance.
+struct Size {
+  double e, weight, variance;
+};
+
+/// Quantile and mean square below the quantile of errors that are sorted.
+double quantile(const std::vector<Size>& sizes, double share) {
   double sum = 0.0;
-  for (const auto& [v, w] : value_weight)
-    if ((sum += w) >= share * total) return v;
-  return value_weight.empty() ? 0.0 : value_weight.back().first;
+  for (const Size& s : sizes)
+    if ((sum += s.weight) >= share) return s.e;
+  return sizes.empty() ? 0.0 : sizes.back().e;
+}
+double square_below(const std::vector<Size>& sizes, double limit) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const Size& s : sizes) {
+    if (s.e > limit) break;
+    sum += s.weight * (s.e * s.e - s.variance);
+    weight += s.weight;
+  }
+  return weight > 0.0 ? std::max(0.0, sum / weight) : 0.0;
 }
 
 ErrorMeasure measure(const std::vector<double>& x, const std::vector<double>& reference,
@@ -29,7 +42,7 @@ ErrorMeasure measure(const std::vector<double>& x, const std::vector<double>& re
   double square = 0.0;
   double noise = 0.0;
   double spread = 0.0;
-  std::vector<std::pair<double, double>> sizes;
+  std::vector<Size> sizes;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double scale = std::max(reference[i], floor);
     const double e = scale > 0.0 ? (x[i] - reference[i]) / scale : 0.0;
@@ -40,14 +53,16 @@ ErrorMeasure measure(const std::vector<double>& x, const std::vector<double>& re
     spread += w * w * std::pow(e * e - v, 2);
     noise += w * v;
     m.worst = std::max(m.worst, std::abs(e));
-    sizes.emplace_back(std::abs(e), w);
+    sizes.push_back({std::abs(e), w, v});
   }
   const double deviation = 1.96 * std::sqrt(std::max(0.0, spread));
   m.rms = std::sqrt(std::max(0.0, square));
   m.low = std::sqrt(std::max(0.0, square - deviation));
   m.high = std::sqrt(std::max(0.0, square + deviation));
   m.noise = std::sqrt(noise);
-  m.p95 = weighted_quantile(std::move(sizes), 0.95);
+  std::sort(sizes.begin(), sizes.end(), [](const Size& a, const Size& b) { return a.e < b.e; });
+  m.p95 = quantile(sizes, 0.95);
+  m.most = std::sqrt(square_below(sizes, quantile(sizes, 0.99)));
   return m;
 }
 

@@ -11,9 +11,10 @@ struct PointValues;
 
 /// How far values are from a reference: e_i = (x_i - r_i) / max(r_i, 1 % of the mean of r).
 struct ErrorMeasure {
-  double rms = 0.0;   ///< without the reference's noise (its variance is subtracted); >= 0
+  double rms = 0.0;  ///< without the reference's noise (its variance is subtracted); >= 0
   double low = 0.0, high = 0.0;  ///< 95 % interval of rms
   double bias = 0.0;             ///< mean of e
+  double most = 0.0;             ///< rms without the largest 1 % of the errors
   double p95 = 0.0;              ///< of |e|, the reference's noise included
   double worst = 0.0;            ///< likewise
   double noise = 0.0;            ///< RMS of the reference's own standard errors

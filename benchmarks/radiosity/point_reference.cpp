@@ -136,8 +136,8 @@ class Walk {
   float emission_weight(const scene::SurfacePoint& hit) const {
     if (!vertex_.present) return 1.0f;
     const float distance = (hit.position - vertex_.position).norm();
-    return power_heuristic(
-        vertex_.pdf, shading_.lights().pdf(vertex_.position, vertex_.normal, hit, distance));
+    return power_heuristic(vertex_.pdf,
+                           shading_.lights().pdf(vertex_.position, vertex_.normal, hit, distance));
   }
   float sky_weight(const Vec3f& w) const {
     if (!vertex_.present) return 1.0f;
@@ -173,8 +173,8 @@ PointValues trace(const Workload& workload, const std::vector<Receiver>& receive
         double group = 0.0;
         for (std::uint32_t k = 0; k < size; ++k) {
           scene::Sampler sampler(seed + (std::uint64_t{g} << 32), static_cast<std::uint32_t>(i), k);
-          group += irradiance_sample(workload.shading(), receivers[i], sampler,
-                                     counts[begin / kGrain]);
+          group +=
+              irradiance_sample(workload.shading(), receivers[i], sampler, counts[begin / kGrain]);
         }
         group /= size;
         sum += group;

@@ -33,10 +33,10 @@ struct PointValues {
                                           std::uint32_t paths, std::uint64_t seed);
 
 struct ReferenceOptions {
-  double noise = 0.003;                 ///< of the whole, see PointValues::noise()
-  std::uint64_t max_rays = 300000000;   ///< about; then the noise is what it is
+  double noise = 0.003;                ///< of the whole, see PointValues::noise()
+  std::uint64_t max_rays = 300000000;  ///< about; then the noise is what it is
   std::uint64_t seed = 0x5eedf00d;
-  std::filesystem::path cache;          ///< folder for finished references; empty: none
+  std::filesystem::path cache;  ///< folder for finished references; empty: none
 };
 
 /// Reference values: a pilot says how noisy each receiver is, fresh paths in proportion make the

@@ -68,10 +68,11 @@ class Coverage {
 
   void add(double value, double error, double reference) {
     const double distance = std::abs(value - reference);
+    const double rounding = 1e-5 * std::abs(reference);
     ++count_;
-    normal_ += distance <= kNormal * widen_ * error ? 1.0 : 0.0;
-    student_ += distance <= kStudent7 * widen_ * error ? 1.0 : 0.0;
-    exact_ += error == 0.0 && distance > 1e-5 * std::abs(reference) ? 1.0 : 0.0;
+    normal_ += distance <= kNormal * widen_ * error + rounding ? 1.0 : 0.0;
+    student_ += distance <= kStudent7 * widen_ * error + rounding ? 1.0 : 0.0;
+    exact_ += error == 0.0 && distance > rounding ? 1.0 : 0.0;
     found_ += distance * distance;
     stated_ += error * error;
     signed_ += value - reference;

@@ -93,8 +93,7 @@ double read(const Workload& workload, const SurfaceField& field, const scene::Su
             Reading reading) {
   const SurfaceField::Quantities& q = field.irradiance;
   if (reading == Reading::Interpolated) {
-    const auto s =
-        field.stencil(workload.scene(), p.object, p.triangle, p.position, Side::Front);
+    const auto s = field.stencil(workload.scene(), p.object, p.triangle, p.position, Side::Front);
     return static_cast<double>((field.interpolate<1>(q.direct, s, Side::Front) +
                                 field.interpolate<1>(q.caustic, s, Side::Front) +
                                 field.interpolate<1>(q.indirect, s, Side::Front))

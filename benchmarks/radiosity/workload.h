@@ -33,7 +33,8 @@ class Workload {
   scene::Shading<1> shading_;
 };
 
-/// The same scene with every diffuse surface almost black (1e-6): its irradiance is the direct part.
+/// The same scene with every diffuse surface almost black (1e-6): its irradiance is the direct
+/// part.
 [[nodiscard]] scene::Model darkened(scene::Model model);
 
 }  // namespace atrium::measure

@@ -1,0 +1,101 @@
+#include "cost.h"
+
+#include <cmath>
+
+#include "effort.h"
+
+namespace atrium::measure {
+namespace {
+
+using radiosity::SolveResult;
+
+double total(const scene::SurfaceField& f, std::size_t i) {
+  const auto at = [&](const std::vector<float>& a) {
+    return a.empty() ? 0.0 : static_cast<double>(a[i]);
+  };
+  return at(f.irradiance.direct) + at(f.irradiance.caustic) + at(f.irradiance.indirect);
+}
+
+/// Deviation of one solution, from two of the same mesh. The scale is their mean; sides that take
+/// no part count nothing.
+double spread(const scene::SurfaceField& a, const scene::SurfaceField& b) {
+  if (a.element_count() != b.element_count()) return 0.0;
+  std::vector<double> first, second, weights;
+  for (std::size_t i = 0; i < a.element_count() * 2; ++i) {
+    if (a.valid[i] == 0 || b.valid[i] == 0) continue;
+    first.push_back(total(a, i));
+    second.push_back(0.5 * (total(a, i) + total(b, i)));
+    weights.push_back(static_cast<double>(a.element_area[i / 2]));
+  }
+  // x1 - (x1 + x2) / 2 has half the variance of one solution.
+  return std::sqrt(2.0) * measure_error(first, second, weights).rms;
+}
+
+}  // namespace
+
+CostRow solve_cost(const Workload& workload, const std::vector<Receiver>& receivers,
+                   const PointValues& reference, const Variant& variant) {
+  CostRow row;
+  row.variant = variant.name;
+  const Effort effort;
+  const SolveResult r = radiosity::solve(workload.query(), Workload::basis(), variant.options);
+  row.cpu = effort.cpu_seconds();
+  row.wall = effort.wall_seconds();
+  row.memory = effort.peak_memory_mb();
+  row.rays = r.counters.rays();
+  row.receivers = r.counters[scene::Counter::ElementSides];
+  row.estimate = r.error_estimate;
+  row.stopped_by = r.stopped_by;
+  row.element =
+      measure_error(read_field(workload, r.field, receivers, Reading::Element), reference);
+  row.interpolated =
+      measure_error(read_field(workload, r.field, receivers, Reading::Interpolated), reference);
+  if (variant.options.solver != radiosity::Solver::Rows) return row;
+  radiosity::SolveOptions other = variant.options;
+  other.seed = variant.options.seed + 1000;
+  row.statistical =
+      spread(r.field, radiosity::solve(workload.query(), Workload::basis(), other).field);
+  return row;
+}
+
+CostRow path_cost(const Workload& workload, const std::vector<Receiver>& receivers,
+                  const PointValues& reference, std::uint32_t paths, std::uint64_t sides) {
+  CostRow row;
+  row.variant = std::to_string(paths) + " paths";
+  const Effort effort;
+  const PointValues values = trace_receivers(workload, receivers, paths, 77);
+  const double scale = static_cast<double>(sides) / static_cast<double>(receivers.size());
+  row.cpu = effort.cpu_seconds() * scale;
+  row.wall = effort.wall_seconds() * scale;
+  row.rays = static_cast<std::uint64_t>(static_cast<double>(values.rays) * scale);
+  row.receivers = sides;
+  row.element = row.interpolated = measure_error(values.mean, reference);
+  row.statistical = row.element.rms;
+  row.estimate = values.noise();
+  return row;
+}
+
+double error_of(const CostRow& row, ErrorKind kind) {
+  return kind == ErrorKind::Statistical ? row.statistical
+                                        : std::min(row.element.rms, row.interpolated.rms);
+}
+
+double cost_of(const CostRow& row, CostKind kind) {
+  return kind == CostKind::Rays ? static_cast<double>(row.rays) : row.cpu;
+}
+
+double cost_to(const CostSeries& series, double error, ErrorKind kind, CostKind cost) {
+  const std::vector<CostRow>& rows = series.rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double e = error_of(rows[i], kind);
+    if (!(e <= error)) continue;
+    if (i == 0 || !(e > 0.0)) return cost_of(rows[i], cost);
+    const double before = error_of(rows[i - 1], kind);
+    const double share = std::log(before / error) / std::log(before / e);
+    const double low = std::log(cost_of(rows[i - 1], cost));
+    return std::exp(low + share * (std::log(cost_of(rows[i], cost)) - low));
+  }
+  return 0.0;
+}
+
+}  // namespace atrium::measure

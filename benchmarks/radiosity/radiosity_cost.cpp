@@ -1,0 +1,280 @@
+// Rays, time and memory of the radiosity pass against its error, beside classic shooting and path
+// tracing of every receiver. With --docs DIR it writes DIR/radiosity-cost.md and its plots.
+//
+//   radiosity_cost SCENE... [--elements N] [--cache DIR] [--docs DIR]
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "cost.h"
+#include "effort.h"
+#include "material/error.h"
+#include "plot/plot.h"
+#include "scene/output_file.h"
+#include "scene/parallel.h"
+#include "table.h"
+
+namespace {
+
+using namespace atrium;
+using namespace atrium::measure;
+
+constexpr double kGoals[] = {0.10, 0.05, 0.02, 0.01, 0.005};
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<std::uint32_t> elements = {10000, 30000, 100000};
+  std::vector<double> scales = {0.125, 0.5, 2.0};
+  std::vector<double> shares = {0.5, 0.2, 0.05};
+  std::vector<std::uint32_t> paths = {16, 64, 256, 1024};
+  std::uint32_t shooting_elements = 1500;
+  std::size_t receivers = 1000;
+  ReferenceOptions reference;
+  std::string docs;
+};
+
+struct SceneCost {
+  std::string name;
+  std::uint64_t triangles = 0;
+  PointValues reference;
+  std::vector<CostSeries> series;
+  std::string threads;
+};
+
+std::string count_text(std::uint64_t n) {
+  return n % 1000 == 0 ? std::to_string(n / 1000) + "k" : std::to_string(n);
+}
+
+class SceneRun {
+ public:
+  SceneRun(const std::string& file, const Options& options)
+      : options_(options), workload_(std::filesystem::path(file)) {
+    cost_.name = workload_.name();
+    cost_.triangles = workload_.scene().triangle_count();
+    receivers_ = choose_receivers(workload_, options.receivers, 1);
+    const Effort effort;
+    cost_.reference = reference_values(workload_, receivers_, options.reference);
+    std::fprintf(stderr, "%s: reference, noise %.3f %%, %.0f s\n", cost_.name.c_str(),
+                 100.0 * cost_.reference.noise(), effort.wall_seconds());
+  }
+
+  SceneCost all() {
+    for (const std::uint32_t n : options_.elements) rows(n);
+    if (!workload_.specular()) shooting();
+    paths();
+    threads();
+    return std::move(cost_);
+  }
+
+ private:
+  CostSeries& begin(const std::string& name) {
+    return cost_.series.emplace_back(CostSeries{.name = name, .rows = {}});
+  }
+  void add(CostSeries& series, const CostRow& row) {
+    std::fprintf(stderr, "%s, %s, %s: %.3g rays, %.1f s CPU, error %.2f %%, statistical %.2f %%\n",
+                 cost_.name.c_str(), series.name.c_str(), row.variant.c_str(),
+                 static_cast<double>(row.rays), row.cpu, 100.0 * error_of(row, ErrorKind::Total),
+                 100.0 * row.statistical);
+    series.rows.push_back(row);
+  }
+
+  void rows(std::uint32_t elements) {
+    CostSeries& series = begin("rows, " + count_text(elements) + " elements");
+    for (const double scale : options_.scales) {
+      Variant v = rows_variant(scale);
+      v.options.max_elements = elements;
+      add(series, solve_cost(workload_, receivers_, cost_.reference, v));
+    }
+    sides_ = series.rows.empty() ? 0 : series.rows.back().receivers;
+  }
+  void shooting() {
+    if (options_.shares.empty()) return;
+    CostSeries& series = begin("shooting, " + count_text(options_.shooting_elements) + " elements");
+    for (const double share : options_.shares) {
+      Variant v;
+      v.name = percent(share) + " unshot";
+      v.options.solver = radiosity::Solver::Shooting;
+      v.options.max_elements = options_.shooting_elements;
+      v.options.tolerance = share;
+      add(series, solve_cost(workload_, receivers_, cost_.reference, v));
+    }
+  }
+  void paths() {
+    CostSeries& series = begin("path tracing");
+    for (const std::uint32_t n : options_.paths)
+      add(series, path_cost(workload_, receivers_, cost_.reference, n, sides_));
+  }
+  /// The middle mesh on one thread and on two.
+  void threads() {
+    Variant v = rows_variant(0.5);
+    v.options.max_elements = options_.elements.front();
+    double wall[2] = {};
+    double cpu[2] = {};
+    std::vector<float> indirect[2];
+    for (int t = 0; t < 2; ++t) {
+      const scene::ThreadLimit limit(t + 1);
+      const Effort effort;
+      indirect[t] = radiosity::solve(workload_.query(), Workload::basis(), v.options)
+                        .field.irradiance.indirect;
+      wall[t] = effort.wall_seconds();
+      cpu[t] = effort.cpu_seconds();
+    }
+    cost_.threads = "1 thread " + format("%.2f s", wall[0]) + ", 2 threads " +
+                    format("%.2f s", wall[1]) + " (wall; CPU " + format("%.2f", cpu[0]) + " and " +
+                    format("%.2f s", cpu[1]) + "): efficiency " +
+                    format("%.2f", wall[0] / (2.0 * wall[1])) + ", results " +
+                    (indirect[0] == indirect[1] ? "equal to the bit" : "DIFFERENT");
+  }
+
+  const Options& options_;
+  Workload workload_;
+  std::vector<Receiver> receivers_;
+  SceneCost cost_;
+  std::uint64_t sides_ = 0;
+};
+
+std::string rows_table(const SceneCost& scene) {
+  Table table({"method", "effort", "rays", "rays per side", "CPU s", "wall s", "peak MB",
+               "RMS error", "95 % interval", "best 99 %", "interpolated", "statistical",
+               "p95 / RMS", "bias", "own estimate"});
+  for (const CostSeries& s : scene.series)
+    for (const CostRow& r : s.rows)
+      table.row({s.name, r.variant, short_count(static_cast<double>(r.rays)),
+                 format("%.0f", static_cast<double>(r.rays) / static_cast<double>(r.receivers)),
+                 format("%.1f", r.cpu), format("%.1f", r.wall),
+                 r.memory > 0.0 ? format("%.0f", r.memory) : "", percent(r.element.rms),
+                 percent(r.element.low) + " - " + percent(r.element.high), percent(r.element.most),
+                 percent(r.interpolated.rms), r.statistical > 0.0 ? percent(r.statistical) : "",
+                 r.element.rms > 0.0 ? format("%.1f", r.element.p95 / r.element.rms) : "",
+                 format("%+.2f %%", 100.0 * r.element.bias),
+                 r.estimate > 0.0 ? percent(r.estimate) : ""});
+  return table.text();
+}
+
+std::string goals_table(const SceneCost& scene, ErrorKind kind) {
+  std::vector<std::string> head = {"method"};
+  for (const double goal : kGoals) head.push_back(percent(goal) + ": rays");
+  for (const double goal : kGoals) head.push_back(percent(goal) + ": CPU s");
+  Table table(head);
+  for (const CostSeries& s : scene.series) {
+    std::vector<std::string> cells = {s.name};
+    for (const double goal : kGoals)
+      cells.push_back(short_count(cost_to(s, goal, kind, CostKind::Rays)));
+    for (const double goal : kGoals) {
+      const double cpu = cost_to(s, goal, kind, CostKind::Cpu);
+      cells.push_back(cpu > 0.0 ? format("%.3g", cpu) : "-");
+    }
+    table.row(cells);
+  }
+  return table.text();
+}
+
+plot::Chart chart(const SceneCost& scene, CostKind cost) {
+  plot::Chart c{.title = scene.name,
+                .x_title = cost == CostKind::Rays ? "rays" : "CPU seconds",
+                .y_title = "RMS error of irradiance [%]",
+                .log_x = true,
+                .log_y = true,
+                .curves = {}};
+  c.legend = plot::LegendPlace::BottomLeft;
+  for (const CostSeries& s : scene.series) {
+    for (const ErrorKind kind : {ErrorKind::Total, ErrorKind::Statistical}) {
+      if (kind == ErrorKind::Statistical && s.name.rfind("rows", 0) != 0) continue;
+      plot::Curve curve{.name = s.name + (kind == ErrorKind::Statistical ? ", statistical" : ""),
+                        .x = {},
+                        .y = {},
+                        .dashed = kind == ErrorKind::Statistical};
+      for (const CostRow& r : s.rows) {
+        curve.x.push_back(cost_of(r, cost));
+        curve.y.push_back(100.0 * error_of(r, kind));
+      }
+      c.curves.push_back(std::move(curve));
+    }
+  }
+  return c;
+}
+
+std::string section(const SceneCost& s) {
+  return "## " + s.name + "\n\n" + std::to_string(s.triangles) + " triangles, " +
+         std::to_string(s.reference.mean.size()) + " receivers; reference " +
+         short_count(static_cast<double>(s.reference.rays)) + " rays, its noise " +
+         percent(s.reference.noise()) + ".\n\n" + rows_table(s) +
+         "\nTo a total error (element or interpolated, whichever is better):\n\n" +
+         goals_table(s, ErrorKind::Total) + "\nTo a statistical error:\n\n" +
+         goals_table(s, ErrorKind::Statistical) + "\n" + s.threads + "\n\n";
+}
+
+const char* kIntroduction =
+    "# Cost of the radiosity pass at equal error\n\n"
+    "Made by `benchmarks/radiosity/radiosity_cost` (see its head for the command). Errors are "
+    "those "
+    "of total irradiance at random points of the surfaces, uniform by area: e = difference / "
+    "max(E, 1 % of the mean E), RMS over the points. The reference is a path tracer with light "
+    "sampling that knows nothing of elements; its noise is subtracted in quadrature, the interval "
+    "holds what is left of it and of the choice of points. *Element*: by the value of the element; "
+    "*interpolated*: as pictures read it; *statistical*: from two seeds on one mesh, over all "
+    "element sides; only this part falls with more rays. Path tracing was measured at the "
+    "receivers "
+    "and its cost scaled to the element sides of the finest mesh. All rays are counted. Times are "
+    "of a shared machine and good to some 20 %.\n\n";
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  scene::OutputFile out(file);
+  std::ofstream stream(out.path(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw RuntimeFailure(file.string() + ": writing failed");
+  out.commit();
+}
+
+void run(const Options& options) {
+  std::string text = kIntroduction;
+  const std::filesystem::path docs = options.docs;
+  if (!options.docs.empty()) std::filesystem::create_directories(docs / "images/radiosity");
+  for (const std::string& file : options.scenes) {
+    const SceneCost scene = SceneRun(file, options).all();
+    const std::string part = section(scene);
+    std::fputs(part.c_str(), stdout);
+    std::fflush(stdout);
+    text += part;
+    if (options.docs.empty()) continue;
+    const std::string picture = "images/radiosity/cost-" + scene.name + ".svg";
+    plot::write_plot(docs / picture, {chart(scene, CostKind::Rays), chart(scene, CostKind::Cpu)},
+                     {.width = 1200, .height = 480, .columns = 2});
+    text += "![Error against rays and CPU seconds: " + scene.name + "](" + picture + ")\n\n";
+  }
+  if (!options.docs.empty()) write_text(docs / "radiosity-cost.md", text);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("cost of the radiosity pass at equal error");
+  Options o;
+  std::string cache;
+  double reference_rays = 3e8;
+  app.add_option("scene", o.scenes, "scene files")->required();
+  app.add_option("--elements", o.elements, "about; one series each")->capture_default_str();
+  app.add_option("--scales", o.scales, "rays of the solver, times the default")
+      ->capture_default_str();
+  app.add_option("--shooting", o.shares, "unshot flux at which shooting ends")
+      ->capture_default_str();
+  app.add_option("--shooting-elements", o.shooting_elements, "about")->capture_default_str();
+  app.add_option("--paths", o.paths, "of the path tracer per receiver")->capture_default_str();
+  app.add_option("--receivers", o.receivers, "points of the reference")->capture_default_str();
+  app.add_option("--reference-noise", o.reference.noise, "relative")->capture_default_str();
+  app.add_option("--reference-rays", reference_rays, "at most, about")->capture_default_str();
+  app.add_option("--cache", cache, "folder for finished references");
+  app.add_option("--docs", o.docs, "folder for the page and its plots");
+  CLI11_PARSE(app, argc, argv);
+  o.reference.cache = cache;
+  o.reference.max_rays = static_cast<std::uint64_t>(reference_rays);
+  try {
+    run(o);
+    return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "radiosity_cost: %s\n", e.what());
+    return 1;
+  }
+}
