@@ -18,8 +18,8 @@ double total(const scene::SurfaceField& f, std::size_t i) {
 
 /// Deviation of one solution, from two of the same mesh. The scale is their mean; sides that take
 /// no part count nothing.
-double spread(const scene::SurfaceField& a, const scene::SurfaceField& b) {
-  if (a.element_count() != b.element_count()) return 0.0;
+ErrorMeasure spread(const scene::SurfaceField& a, const scene::SurfaceField& b) {
+  if (a.element_count() != b.element_count()) return {};
   std::vector<double> first, second, weights;
   for (std::size_t i = 0; i < a.element_count() * 2; ++i) {
     if (a.valid[i] == 0 || b.valid[i] == 0) continue;
@@ -28,7 +28,10 @@ double spread(const scene::SurfaceField& a, const scene::SurfaceField& b) {
     weights.push_back(static_cast<double>(a.element_area[i / 2]));
   }
   // x1 - (x1 + x2) / 2 has half the variance of one solution.
-  return std::sqrt(2.0) * measure_error(first, second, weights).rms;
+  ErrorMeasure m = measure_error(first, second, weights);
+  m.rms *= std::sqrt(2.0);
+  m.absolute *= std::sqrt(2.0);
+  return m;
 }
 
 }  // namespace
@@ -53,8 +56,10 @@ CostRow solve_cost(const Workload& workload, const std::vector<Receiver>& receiv
   if (variant.options.solver != radiosity::Solver::Rows) return row;
   radiosity::SolveOptions other = variant.options;
   other.seed = variant.options.seed + 1000;
-  row.statistical =
+  const ErrorMeasure m =
       spread(r.field, radiosity::solve(workload.query(), Workload::basis(), other).field);
+  row.statistical = m.rms;
+  row.statistical_absolute = m.absolute;
   return row;
 }
 
@@ -88,8 +93,8 @@ double cost_to(const CostSeries& series, double error, ErrorKind kind, CostKind 
   const std::vector<CostRow>& rows = series.rows;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double e = error_of(rows[i], kind);
-    if (!(e <= error)) continue;
-    if (i == 0 || !(e > 0.0)) return cost_of(rows[i], cost);
+    if (!(e > 0.0 && e <= error)) continue;
+    if (i == 0) return cost_of(rows[i], cost);
     const double before = error_of(rows[i - 1], kind);
     const double share = std::log(before / error) / std::log(before / e);
     const double low = std::log(cost_of(rows[i - 1], cost));

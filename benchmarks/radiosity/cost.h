@@ -22,7 +22,8 @@ struct CostRow {
   /// RMS between two seeds on the same mesh, over sqrt(2): the part that more rays take away. Rows
   /// only.
   double statistical = 0.0;
-  double estimate = 0.0;  ///< by the solver itself; 0: makes none
+  double statistical_absolute = 0.0;  ///< RMS of the differences over RMS of the values
+  double estimate = 0.0;              ///< by the solver itself; 0: makes none
   std::string stopped_by;
 };
 

@@ -42,6 +42,8 @@ ErrorMeasure measure(const std::vector<double>& x, const std::vector<double>& re
   double square = 0.0;
   double noise = 0.0;
   double spread = 0.0;
+  double differences = 0.0;
+  double values = 0.0;
   std::vector<Size> sizes;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double scale = std::max(reference[i], floor);
@@ -52,6 +54,8 @@ ErrorMeasure measure(const std::vector<double>& x, const std::vector<double>& re
     square += w * (e * e - v);
     spread += w * w * std::pow(e * e - v, 2);
     noise += w * v;
+    differences += w * (std::pow(x[i] - reference[i], 2) - variance[i]);
+    values += w * std::pow(reference[i], 2);
     m.worst = std::max(m.worst, std::abs(e));
     sizes.push_back({std::abs(e), w, v});
   }
@@ -60,6 +64,7 @@ ErrorMeasure measure(const std::vector<double>& x, const std::vector<double>& re
   m.low = std::sqrt(std::max(0.0, square - deviation));
   m.high = std::sqrt(std::max(0.0, square + deviation));
   m.noise = std::sqrt(noise);
+  m.absolute = values > 0.0 ? std::sqrt(std::max(0.0, differences) / values) : 0.0;
   std::sort(sizes.begin(), sizes.end(), [](const Size& a, const Size& b) { return a.e < b.e; });
   m.p95 = quantile(sizes, 0.95);
   m.most = std::sqrt(square_below(sizes, quantile(sizes, 0.99)));

@@ -13,6 +13,7 @@ struct PointValues;
 struct ErrorMeasure {
   double rms = 0.0;  ///< without the reference's noise (its variance is subtracted); >= 0
   double low = 0.0, high = 0.0;  ///< 95 % interval of rms
+  double absolute = 0.0;         ///< RMS of x - r over RMS of r, noise as in rms
   double bias = 0.0;             ///< mean of e
   double most = 0.0;             ///< rms without the largest 1 % of the errors
   double p95 = 0.0;              ///< of |e|, the reference's noise included

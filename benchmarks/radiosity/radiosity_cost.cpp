@@ -1,19 +1,21 @@
 // Rays, time and memory of the radiosity pass against its error, beside classic shooting and path
 // tracing of every receiver. With --docs DIR it writes DIR/radiosity-cost.md and its plots.
 //
-//   radiosity_cost SCENE... [--elements N] [--cache DIR] [--docs DIR]
+//   radiosity_cost SCENE[@N[,N...]]... [--elements N] [--cache DIR] [--docs DIR]
+//
+// @N: about how many elements for this scene, instead of --elements.
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "cost.h"
 #include "effort.h"
 #include "material/error.h"
 #include "plot/plot.h"
-#include "scene/output_file.h"
 #include "scene/parallel.h"
 #include "table.h"
+#include "write_text.h"
 
 namespace {
 
@@ -24,7 +26,7 @@ constexpr double kGoals[] = {0.10, 0.05, 0.02, 0.01, 0.005};
 
 struct Options {
   std::vector<std::string> scenes;
-  std::vector<std::uint32_t> elements = {10000, 30000, 100000};
+  std::vector<std::uint32_t> elements = {5000, 30000};
   std::vector<double> scales = {0.125, 0.5, 2.0};
   std::vector<double> shares = {0.5, 0.2, 0.05};
   std::vector<std::uint32_t> paths = {16, 64, 256, 1024};
@@ -46,10 +48,31 @@ std::string count_text(std::uint64_t n) {
   return n % 1000 == 0 ? std::to_string(n / 1000) + "k" : std::to_string(n);
 }
 
+/// "FILE@N,N": what to solve, with how many elements.
+struct Request {
+  std::filesystem::path file;
+  std::vector<std::uint32_t> elements;
+};
+Request read_request(const std::string& text, const std::vector<std::uint32_t>& elements) {
+  const std::size_t at = text.rfind('@');
+  Request r{text.substr(0, at), elements};
+  if (at == std::string::npos) return r;
+  r.elements.clear();
+  std::istringstream numbers(text.substr(at + 1));
+  for (std::string n; std::getline(numbers, n, ',');) {
+    std::uint32_t value = 0;
+    const auto [end, failed] = std::from_chars(n.data(), n.data() + n.size(), value);
+    if (failed != std::errc{} || end != n.data() + n.size() || value == 0)
+      throw Error(text + ": '" + n + "' is no number of elements");
+    r.elements.push_back(value);
+  }
+  return r;
+}
+
 class SceneRun {
  public:
-  SceneRun(const std::string& file, const Options& options)
-      : options_(options), workload_(std::filesystem::path(file)) {
+  SceneRun(const Request& request, const Options& options)
+      : options_(options), elements_(request.elements), workload_(request.file) {
     cost_.name = workload_.name();
     cost_.triangles = workload_.scene().triangle_count();
     receivers_ = choose_receivers(workload_, options.receivers, 1);
@@ -60,7 +83,7 @@ class SceneRun {
   }
 
   SceneCost all() {
-    for (const std::uint32_t n : options_.elements) rows(n);
+    for (const std::uint32_t n : elements_) rows(n);
     if (!workload_.specular()) shooting();
     paths();
     threads();
@@ -105,10 +128,10 @@ class SceneRun {
     for (const std::uint32_t n : options_.paths)
       add(series, path_cost(workload_, receivers_, cost_.reference, n, sides_));
   }
-  /// The middle mesh on one thread and on two.
+  /// The coarsest mesh on one thread and on two.
   void threads() {
     Variant v = rows_variant(0.5);
-    v.options.max_elements = options_.elements.front();
+    v.options.max_elements = elements_.front();
     double wall[2] = {};
     double cpu[2] = {};
     std::vector<float> indirect[2];
@@ -128,6 +151,7 @@ class SceneRun {
   }
 
   const Options& options_;
+  std::vector<std::uint32_t> elements_;
   Workload workload_;
   std::vector<Receiver> receivers_;
   SceneCost cost_;
@@ -146,6 +170,7 @@ std::string rows_table(const SceneCost& scene) {
                  r.memory > 0.0 ? format("%.0f", r.memory) : "", percent(r.element.rms),
                  percent(r.element.low) + " - " + percent(r.element.high), percent(r.element.most),
                  percent(r.interpolated.rms), r.statistical > 0.0 ? percent(r.statistical) : "",
+                 r.statistical_absolute > 0.0 ? percent(r.statistical_absolute) : "",
                  r.element.rms > 0.0 ? format("%.1f", r.element.p95 / r.element.rms) : "",
                  format("%+.2f %%", 100.0 * r.element.bias),
                  r.estimate > 0.0 ? percent(r.estimate) : ""});
@@ -214,26 +239,18 @@ const char* kIntroduction =
     "sampling that knows nothing of elements; its noise is subtracted in quadrature, the interval "
     "holds what is left of it and of the choice of points. *Element*: by the value of the element; "
     "*interpolated*: as pictures read it; *statistical*: from two seeds on one mesh, over all "
-    "element sides; only this part falls with more rays. Path tracing was measured at the "
+    "element sides; only this part falls with more rays; *absolute*: the same as RMS of the "
+    "differences over RMS of the irradiance. Path tracing was measured at the "
     "receivers "
     "and its cost scaled to the element sides of the finest mesh. All rays are counted. Times are "
     "of a shared machine and good to some 20 %.\n\n";
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  scene::OutputFile out(file);
-  std::ofstream stream(out.path(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw RuntimeFailure(file.string() + ": writing failed");
-  out.commit();
-}
 
 void run(const Options& options) {
   std::string text = kIntroduction;
   const std::filesystem::path docs = options.docs;
   if (!options.docs.empty()) std::filesystem::create_directories(docs / "images/radiosity");
   for (const std::string& file : options.scenes) {
-    const SceneCost scene = SceneRun(file, options).all();
+    const SceneCost scene = SceneRun(read_request(file, options.elements), options).all();
     const std::string part = section(scene);
     std::fputs(part.c_str(), stdout);
     std::fflush(stdout);
@@ -254,7 +271,8 @@ int main(int argc, char** argv) {
   Options o;
   std::string cache;
   double reference_rays = 3e8;
-  app.add_option("scene", o.scenes, "scene files")->required();
+  app.add_option("scene", o.scenes, "scene files, each with @N,N for its own numbers of elements")
+      ->required();
   app.add_option("--elements", o.elements, "about; one series each")->capture_default_str();
   app.add_option("--scales", o.scales, "rays of the solver, times the default")
       ->capture_default_str();
