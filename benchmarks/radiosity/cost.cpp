@@ -36,8 +36,8 @@ ErrorMeasure spread(const scene::SurfaceField& a, const scene::SurfaceField& b) 
 
 }  // namespace
 
-CostRow solve_cost(const Workload& workload, const std::vector<Receiver>& receivers,
-                   const PointValues& reference, const Variant& variant) {
+CostRow solve_cost(const Workload& workload, const Judges& patches, const Judges& points,
+                   const Variant& variant) {
   CostRow row;
   row.variant = variant.name;
   const Effort effort;
@@ -49,10 +49,13 @@ CostRow solve_cost(const Workload& workload, const std::vector<Receiver>& receiv
   row.receivers = r.counters[scene::Counter::ElementSides];
   row.estimate = r.error_estimate;
   row.stopped_by = r.stopped_by;
-  row.element =
-      measure_error(read_field(workload, r.field, receivers, Reading::Element), reference);
-  row.interpolated =
-      measure_error(read_field(workload, r.field, receivers, Reading::Interpolated), reference);
+  const auto error = [&](const Judges& judges, Reading reading) {
+    return measure_error(read_field(workload, r.field, judges.receivers, reading),
+                         judges.reference);
+  };
+  row.patches = error(patches, Reading::Element);
+  row.points = error(points, Reading::Element);
+  row.interpolated = error(points, Reading::Interpolated);
   if (variant.options.solver != radiosity::Solver::Rows) return row;
   radiosity::SolveOptions other = variant.options;
   other.seed = variant.options.seed + 1000;
@@ -63,26 +66,25 @@ CostRow solve_cost(const Workload& workload, const std::vector<Receiver>& receiv
   return row;
 }
 
-CostRow path_cost(const Workload& workload, const std::vector<Receiver>& receivers,
-                  const PointValues& reference, std::uint32_t paths, std::uint64_t sides) {
+CostRow path_cost(const Workload& workload, const Judges& patches, std::uint32_t paths,
+                  std::uint64_t sides) {
   CostRow row;
   row.variant = std::to_string(paths) + " paths";
   const Effort effort;
-  const PointValues values = trace_receivers(workload, receivers, paths, 77);
-  const double scale = static_cast<double>(sides) / static_cast<double>(receivers.size());
+  const PointValues values = trace_receivers(workload, patches.receivers, paths, 77);
+  const double scale = static_cast<double>(sides) / static_cast<double>(patches.receivers.size());
   row.cpu = effort.cpu_seconds() * scale;
   row.wall = effort.wall_seconds() * scale;
   row.rays = static_cast<std::uint64_t>(static_cast<double>(values.rays) * scale);
   row.receivers = sides;
-  row.element = row.interpolated = measure_error(values.mean, reference);
-  row.statistical = row.element.rms;
+  row.patches = measure_error(values.mean, patches.reference);
+  row.statistical = row.patches.rms;
   row.estimate = values.noise();
   return row;
 }
 
 double error_of(const CostRow& row, ErrorKind kind) {
-  return kind == ErrorKind::Statistical ? row.statistical
-                                        : std::min(row.element.rms, row.interpolated.rms);
+  return kind == ErrorKind::Statistical ? row.statistical : row.patches.rms;
 }
 
 double cost_of(const CostRow& row, CostKind kind) {

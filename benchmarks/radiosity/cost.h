@@ -17,7 +17,8 @@ struct CostRow {
   std::uint64_t receivers = 0;   ///< element sides that got a value
   double cpu = 0.0, wall = 0.0;  ///< [s]
   double memory = 0.0;           ///< peak of the process [MB]; 0: not of interest
-  ErrorMeasure element;          ///< at the receivers, by the value of their element
+  ErrorMeasure patches;          ///< means over patches, by the values of their elements
+  ErrorMeasure points;           ///< at points, by the value of the element
   ErrorMeasure interpolated;     ///< ... by interpolation
   /// RMS between two seeds on the same mesh, over sqrt(2): the part that more rays take away. Rows
   /// only.
@@ -33,14 +34,19 @@ struct CostSeries {
   std::vector<CostRow> rows;
 };
 
+/// Receivers with their reference.
+struct Judges {
+  std::vector<Receiver> receivers;
+  PointValues reference;
+};
+
 /// Solves, rows with two seeds; cost is that of the first.
-[[nodiscard]] CostRow solve_cost(const Workload& workload, const std::vector<Receiver>& receivers,
-                                 const PointValues& reference, const Variant& variant);
+[[nodiscard]] CostRow solve_cost(const Workload& workload, const Judges& patches,
+                                 const Judges& points, const Variant& variant);
 
 /// Path tracing of every receiver: measured at the given ones, cost scaled to `sides` of them.
-[[nodiscard]] CostRow path_cost(const Workload& workload, const std::vector<Receiver>& receivers,
-                                const PointValues& reference, std::uint32_t paths,
-                                std::uint64_t sides);
+[[nodiscard]] CostRow path_cost(const Workload& workload, const Judges& patches,
+                                std::uint32_t paths, std::uint64_t sides);
 
 /// Which number of a row counts as its error.
 enum class ErrorKind { Total, Statistical };

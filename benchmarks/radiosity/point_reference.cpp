@@ -1,6 +1,8 @@
 #include "point_reference.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -47,7 +49,7 @@ class Walk {
       : shading_(shading), sampler_(sampler), counters_(counters) {}
 
   double irradiance(const Receiver& receiver) {
-    const scene::SurfacePoint& p = receiver.point;
+    const scene::SurfacePoint p = receiver.sample(shading_.scene(), sampler_.next_2d());
     const float choice = sampler_.next_1d();
     const auto light = shading_.lights().sample(p.position, p.ng, choice, sampler_.next_2d());
     if (light && light->pdf > 0.0f) {
@@ -190,12 +192,17 @@ PointValues trace(const Workload& workload, const std::vector<Receiver>& receive
   return values;
 }
 
-std::filesystem::path cache_file(const Workload& workload, std::size_t receivers,
+std::filesystem::path cache_file(const Workload& workload, const std::vector<Receiver>& receivers,
                                  const ReferenceOptions& o) {
   if (o.cache.empty()) return {};
   std::ostringstream name;
+  // The receivers follow from the scene, their number and this place of the first of them.
+  const Vec3f first = receivers.front().sample(workload.scene(), {0.5f, 0.5f}).position;
+  const auto place = std::bit_cast<std::array<std::uint32_t, 3>>(
+      std::array<float, 3>{first.x(), first.y(), first.z()});
   name << workload.name() << '-' << std::hex << scene::hash_scene(workload.scene()) << '-'
-       << std::dec << receivers << '-' << o.seed << '-' << o.noise << '-' << o.max_rays << ".txt";
+       << place[0] << place[1] << place[2] << '-' << std::dec << receivers.size() << '-' << o.seed
+       << '-' << o.noise << '-' << o.max_rays << ".txt";
   return o.cache / name.str();
 }
 
@@ -248,7 +255,7 @@ PointValues trace_receivers(const Workload& workload, const std::vector<Receiver
 
 PointValues reference_values(const Workload& workload, const std::vector<Receiver>& receivers,
                              const ReferenceOptions& options) {
-  const std::filesystem::path file = cache_file(workload, receivers.size(), options);
+  const std::filesystem::path file = cache_file(workload, receivers, options);
   PointValues values;
   if (!file.empty() && read_cache(file, receivers.size(), values)) return values;
 

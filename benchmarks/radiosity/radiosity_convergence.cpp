@@ -81,7 +81,7 @@ class SceneRun {
       : options_(options), workload_(std::filesystem::path(file)) {
     if (workload_.specular())
       throw Error(file + ": has mirrors, panes or lobes; only rows solves those");
-    receivers_ = choose_receivers(workload_, options.receivers, 1);
+    receivers_ = choose_receivers(workload_, options.receivers, 0.0, 1);
     reference_ = reference_values(workload_, receivers_, options.reference);
   }
 

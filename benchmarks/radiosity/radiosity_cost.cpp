@@ -32,6 +32,7 @@ struct Options {
   std::vector<std::uint32_t> paths = {16, 64, 256, 1024};
   std::uint32_t shooting_elements = 1500;
   std::size_t receivers = 1000;
+  double patch = 0.2;  ///< [m]
   ReferenceOptions reference;
   std::string docs;
 };
@@ -39,7 +40,7 @@ struct Options {
 struct SceneCost {
   std::string name;
   std::uint64_t triangles = 0;
-  PointValues reference;
+  PointValues patches, points;
   std::vector<CostSeries> series;
   std::string threads;
 };
@@ -75,11 +76,8 @@ class SceneRun {
       : options_(options), elements_(request.elements), workload_(request.file) {
     cost_.name = workload_.name();
     cost_.triangles = workload_.scene().triangle_count();
-    receivers_ = choose_receivers(workload_, options.receivers, 1);
-    const Effort effort;
-    cost_.reference = reference_values(workload_, receivers_, options.reference);
-    std::fprintf(stderr, "%s: reference, noise %.3f %%, %.0f s\n", cost_.name.c_str(),
-                 100.0 * cost_.reference.noise(), effort.wall_seconds());
+    patches_ = judges(options.patch);
+    points_ = judges(0.0);
   }
 
   SceneCost all() {
@@ -87,10 +85,22 @@ class SceneRun {
     if (!workload_.specular()) shooting();
     paths();
     threads();
+    cost_.patches = patches_.reference;
+    cost_.points = points_.reference;
     return std::move(cost_);
   }
 
  private:
+  Judges judges(double size) const {
+    Judges j;
+    j.receivers = choose_receivers(workload_, options_.receivers, size, 1);
+    const Effort effort;
+    j.reference = reference_values(workload_, j.receivers, options_.reference);
+    std::fprintf(stderr, "%s: reference, %s, noise %.3f %%, %.0f s\n", workload_.name().c_str(),
+                 size > 0.0 ? "patches" : "points", 100.0 * j.reference.noise(),
+                 effort.wall_seconds());
+    return j;
+  }
   CostSeries& begin(const std::string& name) {
     return cost_.series.emplace_back(CostSeries{.name = name, .rows = {}});
   }
@@ -107,7 +117,7 @@ class SceneRun {
     for (const double scale : options_.scales) {
       Variant v = rows_variant(scale);
       v.options.max_elements = elements;
-      add(series, solve_cost(workload_, receivers_, cost_.reference, v));
+      add(series, solve_cost(workload_, patches_, points_, v));
     }
     sides_ = series.rows.empty() ? 0 : series.rows.back().receivers;
   }
@@ -120,13 +130,13 @@ class SceneRun {
       v.options.solver = radiosity::Solver::Shooting;
       v.options.max_elements = options_.shooting_elements;
       v.options.tolerance = share;
-      add(series, solve_cost(workload_, receivers_, cost_.reference, v));
+      add(series, solve_cost(workload_, patches_, points_, v));
     }
   }
   void paths() {
     CostSeries& series = begin("path tracing");
     for (const std::uint32_t n : options_.paths)
-      add(series, path_cost(workload_, receivers_, cost_.reference, n, sides_));
+      add(series, path_cost(workload_, patches_, n, sides_));
   }
   /// The coarsest mesh on one thread and on two.
   void threads() {
@@ -153,27 +163,27 @@ class SceneRun {
   const Options& options_;
   std::vector<std::uint32_t> elements_;
   Workload workload_;
-  std::vector<Receiver> receivers_;
+  Judges patches_, points_;
   SceneCost cost_;
   std::uint64_t sides_ = 0;
 };
 
 std::string rows_table(const SceneCost& scene) {
   Table table({"method", "effort", "rays", "rays per side", "CPU s", "wall s", "peak MB",
-               "RMS error", "95 % interval", "best 99 %", "interpolated", "statistical",
-               "p95 / RMS", "bias", "own estimate"});
+               "RMS error", "95 % interval", "best 99 %", "p95 / RMS", "bias", "statistical",
+               "absolute", "own estimate", "points", "interpolated"});
+  const auto or_nothing = [](double v) { return v > 0.0 ? percent(v) : std::string(); };
   for (const CostSeries& s : scene.series)
     for (const CostRow& r : s.rows)
       table.row({s.name, r.variant, short_count(static_cast<double>(r.rays)),
                  format("%.0f", static_cast<double>(r.rays) / static_cast<double>(r.receivers)),
                  format("%.1f", r.cpu), format("%.1f", r.wall),
-                 r.memory > 0.0 ? format("%.0f", r.memory) : "", percent(r.element.rms),
-                 percent(r.element.low) + " - " + percent(r.element.high), percent(r.element.most),
-                 percent(r.interpolated.rms), r.statistical > 0.0 ? percent(r.statistical) : "",
-                 r.statistical_absolute > 0.0 ? percent(r.statistical_absolute) : "",
-                 r.element.rms > 0.0 ? format("%.1f", r.element.p95 / r.element.rms) : "",
-                 format("%+.2f %%", 100.0 * r.element.bias),
-                 r.estimate > 0.0 ? percent(r.estimate) : ""});
+                 r.memory > 0.0 ? format("%.0f", r.memory) : "", percent(r.patches.rms),
+                 percent(r.patches.low) + " - " + percent(r.patches.high), percent(r.patches.most),
+                 r.patches.rms > 0.0 ? format("%.1f", r.patches.p95 / r.patches.rms) : "",
+                 format("%+.2f %%", 100.0 * r.patches.bias), or_nothing(r.statistical),
+                 or_nothing(r.statistical_absolute), or_nothing(r.estimate),
+                 or_nothing(r.points.rms), or_nothing(r.interpolated.rms)});
   return table.text();
 }
 
@@ -222,28 +232,32 @@ plot::Chart chart(const SceneCost& scene, CostKind cost) {
 
 std::string section(const SceneCost& s) {
   return "## " + s.name + "\n\n" + std::to_string(s.triangles) + " triangles, " +
-         std::to_string(s.reference.mean.size()) + " receivers; reference " +
-         short_count(static_cast<double>(s.reference.rays)) + " rays, its noise " +
-         percent(s.reference.noise()) + ".\n\n" + rows_table(s) +
-         "\nTo a total error (element or interpolated, whichever is better):\n\n" +
-         goals_table(s, ErrorKind::Total) + "\nTo a statistical error:\n\n" +
-         goals_table(s, ErrorKind::Statistical) + "\n" + s.threads + "\n\n";
+         std::to_string(s.patches.mean.size()) +
+         " receivers of each kind; reference of the patches " +
+         short_count(static_cast<double>(s.patches.rays)) + " rays, its noise " +
+         percent(s.patches.noise()) + ", of the points " +
+         short_count(static_cast<double>(s.points.rays)) + " rays, " + percent(s.points.noise()) +
+         ".\n\n" + rows_table(s) + "\nTo an RMS error:\n\n" + goals_table(s, ErrorKind::Total) +
+         "\nTo a statistical error:\n\n" + goals_table(s, ErrorKind::Statistical) + "\n" +
+         s.threads + "\n\n";
 }
 
 const char* kIntroduction =
     "# Cost of the radiosity pass at equal error\n\n"
     "Made by `benchmarks/radiosity/radiosity_cost` (see its head for the command). Errors are "
     "those "
-    "of total irradiance at random points of the surfaces, uniform by area: e = difference / "
-    "max(E, 1 % of the mean E), RMS over the points. The reference is a path tracer with light "
-    "sampling that knows nothing of elements; its noise is subtracted in quadrature, the interval "
-    "holds what is left of it and of the choice of points. *Element*: by the value of the element; "
-    "*interpolated*: as pictures read it; *statistical*: from two seeds on one mesh, over all "
-    "element sides; only this part falls with more rays; *absolute*: the same as RMS of the "
-    "differences over RMS of the irradiance. Path tracing was measured at the "
-    "receivers "
-    "and its cost scaled to the element sides of the finest mesh. All rays are counted. Times are "
-    "of a shared machine and good to some 20 %.\n\n";
+    "of total irradiance: e = difference / max(E, 1 % of the mean E), RMS over receivers that lie "
+    "uniform by area. *RMS error*: receivers are patches of 0.2 m, of which the mean counts, "
+    "whatever the elements; *points*: by the value of the element at a point, *interpolated*: as "
+    "pictures read it there; there no mesh resolves the edge of a shadow. The reference is a path "
+    "tracer with light sampling that knows nothing of elements; its noise is subtracted in "
+    "quadrature, and the interval holds what is left of it and of the choice of receivers; *best "
+    "99 %* leaves out the largest 1 % of the errors. *Statistical*: from two seeds on one mesh, "
+    "over "
+    "all element sides; only this part falls with more rays; *absolute*: the same as RMS of the "
+    "differences over RMS of the irradiance. Path tracing was measured at the patches and its cost "
+    "scaled to the element sides of the finest mesh. All rays are counted. Times are of a shared "
+    "machine and good to some 20 %.\n\n";
 
 void run(const Options& options) {
   std::string text = kIntroduction;
@@ -281,6 +295,8 @@ int main(int argc, char** argv) {
   app.add_option("--shooting-elements", o.shooting_elements, "about")->capture_default_str();
   app.add_option("--paths", o.paths, "of the path tracer per receiver")->capture_default_str();
   app.add_option("--receivers", o.receivers, "points of the reference")->capture_default_str();
+  app.add_option("--patch", o.patch, "size of the patches whose mean is judged [m]")
+      ->capture_default_str();
   app.add_option("--reference-noise", o.reference.noise, "relative")->capture_default_str();
   app.add_option("--reference-rays", reference_rays, "at most, about")->capture_default_str();
   app.add_option("--cache", cache, "folder for finished references");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/parallel.h"
 #include "scene/sampler.h"
 
 namespace atrium::measure {
@@ -68,19 +67,89 @@ bool can_be_lit(const Workload& workload, const scene::SurfacePoint& point, std:
   return fronts > 0 || (sky > 0 && workload.scene().environment);
 }
 
-}  // namespace
+/// Barycentric coordinates of corners 1 and 2, kept inside the triangle.
+Vec2f barycentric(const std::array<Vec3f, 3>& c, const Vec3f& p) {
+  const Vec3d e1 = (c[1] - c[0]).cast<double>();
+  const Vec3d e2 = (c[2] - c[0]).cast<double>();
+  const Vec3d d = (p - c[0]).cast<double>();
+  const Vec3d n = e1.cross(e2);
+  const double u = std::clamp(d.cross(e2).dot(n) / n.squaredNorm(), 0.0, 1.0);
+  const double v = std::clamp(e1.cross(d).dot(n) / n.squaredNorm(), 0.0, 1.0 - u);
+  return {static_cast<float>(u), static_cast<float>(v)};
+}
 
-std::vector<Receiver> choose_receivers(const Workload& workload, std::size_t count,
-                                       std::uint64_t seed) {
+std::vector<Receiver> choose_points(const Workload& workload, std::size_t count,
+                                    std::uint64_t seed) {
   const AreaChoice area(workload);
   std::vector<Receiver> receivers;
   for (std::uint32_t i = 0; receivers.size() < count; ++i) {
     scene::Sampler sampler(seed ^ 0x4eceU, 0, i);
     const float choice = sampler.next_1d();
     const scene::SurfacePoint p = area.sample(workload.scene(), choice, sampler.next_2d());
-    if (can_be_lit(workload, p, seed, i)) receivers.push_back({p});
+    if (can_be_lit(workload, p, seed, i)) receivers.emplace_back(p);
   }
   return receivers;
+}
+
+std::vector<Receiver> choose_patches(const Workload& workload, std::size_t count, double size,
+                                     std::uint64_t seed) {
+  constexpr std::uint32_t kLooks = 8;
+  const radiosity::Elements grid = radiosity::make_elements(
+      workload.scene(), {.element_size = size, .max_elements = 10000000, .normal_cone_deg = 10.0});
+  std::vector<double> until;
+  double total = 0.0;
+  for (const float area : grid.layout.element_area)
+    until.push_back(total += static_cast<double>(area));
+  std::vector<Receiver> receivers;
+  for (std::uint32_t i = 0; receivers.size() < count; ++i) {
+    scene::Sampler sampler(seed ^ 0x9a7cU, 0, i);
+    const double x = static_cast<double>(sampler.next_1d()) * total;
+    const auto it = std::min(std::upper_bound(until.begin(), until.end(), x), until.end() - 1);
+    const auto e = static_cast<std::size_t>(it - until.begin());
+    const Receiver r(
+        {grid.pieces.begin() + grid.first_piece[e], grid.pieces.begin() + grid.first_piece[e + 1]});
+    bool lit = true;
+    for (std::uint32_t k = 0; k < kLooks && lit; ++k) {
+      scene::Sampler look(seed ^ 0x100cU, i, k);
+      lit = can_be_lit(workload, r.sample(workload.scene(), look.next_2d()), seed, i * kLooks + k);
+    }
+    if (lit) receivers.push_back(r);
+  }
+  return receivers;
+}
+
+}  // namespace
+
+Receiver::Receiver(std::vector<radiosity::ElementPiece> pieces) {
+  double total = 0.0;
+  for (const radiosity::ElementPiece& piece : pieces)
+    for (std::size_t k = 1; k + 1 < piece.corners.size(); ++k) {
+      const std::array<Vec3f, 3> c = {piece.corners[0], piece.corners[k], piece.corners[k + 1]};
+      total += static_cast<double>((c[1] - c[0]).cross(c[2] - c[0]).norm());
+      triangles_.push_back({piece.object, piece.triangle, c, total});
+    }
+}
+
+scene::SurfacePoint Receiver::sample(const scene::Scene& scene, const Vec2f& u) const {
+  if (is_point()) return point_;
+  const double x = static_cast<double>(u.x()) * triangles_.back().area_until;
+  const auto it =
+      std::min(std::upper_bound(triangles_.begin(), triangles_.end(), x,
+                                [](double a, const Part& b) { return a < b.area_until; }),
+               triangles_.end() - 1);
+  const double before = it == triangles_.begin() ? 0.0 : (it - 1)->area_until;
+  const double share = it->area_until > before ? (x - before) / (it->area_until - before) : 0.5;
+  const float root = std::sqrt(static_cast<float>(std::clamp(share, 0.0, 1.0)));
+  const Vec3f p = it->corners[0] * (1.0f - root) + it->corners[1] * (root * (1.0f - u.y())) +
+                  it->corners[2] * (root * u.y());
+  const Vec2f b = barycentric(scene.corners(it->object, it->triangle), p);
+  return scene::surface_point(scene, it->object, it->triangle, b.x(), b.y());
+}
+
+std::vector<Receiver> choose_receivers(const Workload& workload, std::size_t count, double size,
+                                       std::uint64_t seed) {
+  return size > 0.0 ? choose_patches(workload, count, size, seed)
+                    : choose_points(workload, count, seed);
 }
 
 namespace {
@@ -108,9 +177,18 @@ double read(const Workload& workload, const SurfaceField& field, const scene::Su
 
 std::vector<double> read_field(const Workload& workload, const SurfaceField& field,
                                const std::vector<Receiver>& receivers, Reading reading) {
+  constexpr std::uint32_t kPoints = 64;
   std::vector<double> values;
   values.reserve(receivers.size());
-  for (const Receiver& r : receivers) values.push_back(read(workload, field, r.point, reading));
+  for (const Receiver& r : receivers) {
+    const std::uint32_t points = r.is_point() ? 1 : kPoints;
+    double sum = 0.0;
+    for (std::uint32_t k = 0; k < points; ++k) {
+      scene::Sampler sampler(0x4eadU, static_cast<std::uint32_t>(values.size()), k);
+      sum += read(workload, field, r.sample(workload.scene(), sampler.next_2d()), reading);
+    }
+    values.push_back(sum / points);
+  }
   return values;
 }
 
