@@ -4,7 +4,7 @@
 
 #include "effort.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 namespace {
 
 using radiosity::SolveResult;
@@ -105,4 +105,4 @@ double cost_to(const CostSeries& series, double error, ErrorKind kind, CostKind 
   return 0.0;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

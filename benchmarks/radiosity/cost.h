@@ -8,7 +8,7 @@
 #include "point_reference.h"
 #include "variants.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// One computation of the irradiance everywhere: what it took and how wrong it is.
 struct CostRow {
@@ -59,4 +59,4 @@ enum class CostKind { Rays, Cpu };
 /// neighbouring rows; 0 if it never does. What the first row undercuts costs at most as much as it.
 [[nodiscard]] double cost_to(const CostSeries& series, double error, ErrorKind kind, CostKind cost);
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace atrium::measure {
+namespace atrium::bench {
 namespace {
 
 double cpu_now() {
@@ -46,4 +46,4 @@ double Effort::peak_memory_mb() const {
   return 0.0;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

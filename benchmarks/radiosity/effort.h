@@ -1,6 +1,6 @@
 #pragma once
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// What a computation took from this process: time between construction and the call, memory at
 /// its peak meanwhile.
@@ -17,4 +17,4 @@ class Effort {
   double cpu_, wall_;
 };
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

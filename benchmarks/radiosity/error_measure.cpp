@@ -6,7 +6,7 @@
 
 #include "point_reference.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 namespace {
 
 /// An |e| with its share of the weights and of the reference's variance.
@@ -83,4 +83,4 @@ ErrorMeasure measure_error(const std::vector<double>& values, const std::vector<
   return measure(values, reference, std::vector<double>(values.size(), 0.0), weights);
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 struct PointValues;
 
@@ -30,4 +30,4 @@ struct ErrorMeasure {
                                          const std::vector<double>& reference,
                                          const std::vector<double>& weights);
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -14,7 +14,7 @@
 #include "scene/parallel.h"
 #include "scene/solution_io.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 namespace {
 
 using scene::Counter;
@@ -284,4 +284,4 @@ PointValues reference_values(const Workload& workload, const std::vector<Receive
   return values;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -7,7 +7,7 @@
 #include "receivers.h"
 #include "scene/sampler.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// One sample of the irradiance [unit of the scene] that arrives at a receiver: a path from it with
 /// light sampling at every vertex, weighted against the hits by the power heuristic (Veach 1997,
@@ -46,4 +46,4 @@ struct ReferenceOptions {
                                            const std::vector<Receiver>& receivers,
                                            const ReferenceOptions& options);
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -16,7 +16,7 @@
 namespace {
 
 using namespace atrium;
-using namespace atrium::measure;
+using namespace atrium::bench;
 using radiosity::SolveOptions;
 using radiosity::Solver;
 using radiosity::SolveResult;

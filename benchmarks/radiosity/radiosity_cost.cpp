@@ -20,7 +20,7 @@
 namespace {
 
 using namespace atrium;
-using namespace atrium::measure;
+using namespace atrium::bench;
 
 constexpr double kGoals[] = {0.10, 0.05, 0.02, 0.01, 0.005};
 

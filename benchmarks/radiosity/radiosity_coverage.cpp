@@ -15,7 +15,7 @@
 namespace {
 
 using namespace atrium;
-using namespace atrium::measure;
+using namespace atrium::bench;
 
 /// Two-sided 95 % quantiles of the normal distribution and of Student's t, 7 degrees of freedom.
 constexpr double kNormal = 1.960;

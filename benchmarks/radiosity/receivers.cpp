@@ -4,7 +4,7 @@
 
 #include "scene/sampler.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 namespace {
 
 using scene::ObjectId;
@@ -192,4 +192,4 @@ std::vector<double> read_field(const Workload& workload, const SurfaceField& fie
   return values;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -8,7 +8,7 @@
 #include "scene/surface_field.h"
 #include "workload.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// Where irradiance is measured: a point of a diffuse surface or a small patch of it, whose mean
 /// counts; what arrives at the front of the triangles.
@@ -50,4 +50,4 @@ enum class Reading { Element, Interpolated };
                                              const std::vector<Receiver>& receivers,
                                              Reading reading);
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

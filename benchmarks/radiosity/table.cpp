@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 Table::Table(const std::vector<std::string>& head) {
   row(head);
@@ -34,4 +34,4 @@ std::string short_count(double count) {
   return text;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// A table in Markdown; all columns but the first are aligned right.
 class Table {
@@ -20,4 +20,4 @@ class Table {
 [[nodiscard]] std::string percent(double share);      ///< "1.23 %"
 [[nodiscard]] std::string short_count(double count);  ///< "2.4e7"; "-" for 0
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace atrium::measure {
+namespace atrium::bench {
 namespace {
 
 int times(int rays, double factor) { return static_cast<int>(std::lround(rays * factor)); }
@@ -42,4 +42,4 @@ std::vector<Variant> coverage_variants() {
   return variants;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -5,7 +5,7 @@
 
 #include "radiosity/solve.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// One way to solve, with its name in the tables.
 struct Variant {
@@ -23,4 +23,4 @@ struct Variant {
 /// What is measured for coverage: the default, its parts alone, and a large budget.
 [[nodiscard]] std::vector<Variant> coverage_variants();
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

@@ -4,7 +4,7 @@
 
 #include "scene/scene_io.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 Workload::Workload(std::string name, scene::Model model)
     : name_(std::move(name)),
@@ -27,4 +27,4 @@ scene::Model darkened(scene::Model model) {
   return model;
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

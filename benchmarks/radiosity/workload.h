@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "scene/shading.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 /// A scene that is measured: grey, whatever its colours.
 class Workload {
@@ -37,4 +37,4 @@ class Workload {
 /// part.
 [[nodiscard]] scene::Model darkened(scene::Model model);
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench

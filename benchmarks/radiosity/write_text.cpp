@@ -5,7 +5,7 @@
 #include "material/error.h"
 #include "scene/output_file.h"
 
-namespace atrium::measure {
+namespace atrium::bench {
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
   scene::OutputFile out(file);
@@ -16,4 +16,4 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   out.commit();
 }
 
-}  // namespace atrium::measure
+}  // namespace atrium::bench
