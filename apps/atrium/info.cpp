@@ -131,8 +131,30 @@ std::string size_text(const scene::Bounds& bounds) {
   return text;
 }
 
+/// What lies around the scene, in words and in the scene's unit.
+std::string environment_text(const scene::Scene& scene) {
+  const scene::Environment& e = *scene.environment;
+  const double level =
+      static_cast<double>(material::SpectralBasis::grey().resolve<1>(e.radiance)[0]);
+  const bool light = scene.unit == scene::RadianceUnit::Nit;
+  const char* radiance = light ? "cd/m^2" : "W/(sr m^2)";
+  char text[200];
+  if (const auto* image = std::get_if<scene::Image>(&e.pattern)) {
+    std::snprintf(text, sizeof text, "environment: image of %d x %d times %g", image->width,
+                  image->height, level);
+  } else if (const auto* dome = std::get_if<scene::SkyDome>(&e.pattern)) {
+    std::snprintf(text, sizeof text,
+                  "environment: sky of %.5g %s on the ground, zenith %.5g %s, ground %.5g %s",
+                  level, light ? "lx" : "W/m^2", dome->zenith() * level, radiance,
+                  dome->ground() * level, radiance);
+  } else {
+    std::snprintf(text, sizeof text, "environment: uniform, %.5g %s", level, radiance);
+  }
+  return text;
+}
+
 /// Per light kind and count, in words.
-std::vector<std::string> light_list(const scene::Features& f) {
+std::vector<std::string> light_list(const scene::Scene& scene, const scene::Features& f) {
   std::vector<std::string> list;
   const auto add = [&](std::uint64_t n, const char* what) {
     if (n != 0) list.push_back(std::to_string(n) + " " + what);
@@ -142,7 +164,7 @@ std::vector<std::string> light_list(const scene::Features& f) {
   add(f.spot_lights, "spot lights");
   add(f.directional_lights, "directional lights");
   add(f.profile_lights, "luminaires with measured intensity");
-  if (f.environment) list.push_back("environment");
+  if (f.environment) list.push_back(environment_text(scene));
   return list;
 }
 
@@ -187,7 +209,7 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   r.add("spectrum", loaded.basis.describe());
   r.add("reason for spectrum", loaded.basis_reason);
   r.list("forms of the Fresnel reflectance", fresnel_list(scene, loaded.basis.packs()[0]));
-  r.list("lights", light_list(loaded.features));
+  r.list("lights", light_list(scene, loaded.features));
   std::vector<std::string> cameras;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     cameras.push_back(camera_text(scene.cameras[i], i));

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "gauss_legendre.h"
+#include "material/gauss_legendre.h"
 #include "material/rough_interface.h"
 
 // Directional albedos of a rough interface by quadrature over its facets.

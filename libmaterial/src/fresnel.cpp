@@ -1,6 +1,6 @@
 #include "material/fresnel.h"
 
-#include "gauss_legendre.h"
+#include "material/gauss_legendre.h"
 
 namespace atrium::material {
 

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "gauss_legendre.h"
+#include "material/gauss_legendre.h"
 
 namespace atrium::material {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "gauss_legendre.h"
+#include "material/gauss_legendre.h"
 #include "material/microfacet.h"
 
 namespace atrium::material {

@@ -10,6 +10,7 @@ using scene::Counters;
 template <int N>
 struct Deposit {
   SideIndex side;
+  std::uint32_t group;
   Spectrum<N> flux;
   Spectrum<N> body;  // flux * B(mu) / B-bar
 };
@@ -42,7 +43,7 @@ class PhotonTracer {
                     if (i == kNoSide) return;  // the inner face of a solid: lost
                     left -= static_cast<double>(flux.mean());
                     if (!specular) return;
-                    batch.deposits.push_back({i, flux, flux * at.bsdf.body_weight(wo.z())});
+                    batch.deposits.push_back({i, 0, flux, flux * at.bsdf.body_weight(wo.z())});
                   });
     const double escaped = static_cast<double>(end.escaped.mean());
     batch.escaped += escaped;
@@ -56,16 +57,17 @@ class PhotonTracer {
 
 template <int N>
 void add_deposits(const Problem<N>& problem, const Batch<N>& batch, double photons,
-                  std::vector<std::uint32_t>& arrived, Photons<N>& result) {
+                  std::vector<std::vector<std::uint32_t>>& arrived, Photons<N>& result) {
   for (const Deposit<N>& d : batch.deposits) {
-    ++arrived[d.side];
+    ++arrived[d.group][d.side];
     const float scale =
         static_cast<float>(1.0 / (photons * static_cast<double>(problem.area(d.side))));
-    Irradiance<N>& e = result.caustic.irradiance;
+    Estimate<N>& caustic = result.caustic[d.group];
+    Irradiance<N>& e = caustic.irradiance;
     e.plain[d.side] += d.flux * scale;
     if (!e.body.empty()) e.body[d.side] += d.body * scale;
     const float mean = d.flux.mean() * scale;
-    result.caustic.variance[d.side] += mean * mean;  // of a sum of independent arrivals
+    caustic.variance[d.side] += mean * mean;  // of a sum of independent arrivals
   }
 }
 
@@ -75,12 +77,22 @@ template <int N>
 Photons<N> trace_photons(const Problem<N>& problem, Work& work, Counters& counters) {
   // Without specular surfaces only the flux balance needs some.
   constexpr std::uint64_t kBalancePhotons = 32768;
+  return trace_photons(problem,
+                       problem.specular
+                           ? std::max(kBalancePhotons, problem.options.caustic_photons)
+                           : kBalancePhotons,
+                       work, counters);
+}
+
+template <int N>
+Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,
+                         Counters& counters) {
   constexpr std::size_t kGrain = 4096;
-  Photons<N> result{.caustic = Estimate<N>(problem.side_count(), problem.sides.any_coupled)};
+  Photons<N> result;
+  result.caustic.assign(problem.group_count(),
+                        Estimate<N>(problem.side_count(), problem.sides.any_coupled));
   if (problem.shading.lights().empty()) return result;
-  const std::uint64_t wanted = std::min<std::uint64_t>(
-      0xffffffffU, problem.specular ? std::max(kBalancePhotons, problem.options.caustic_photons)
-                                    : kBalancePhotons);
+  const auto wanted = std::min<std::uint64_t>(0xffffffffU, count);
   const PhotonTracer<N> tracer(problem);
   std::vector<Batch<N>> batches((wanted + kGrain - 1) / kGrain);
   std::vector<std::uint8_t> done(batches.size(), 0);
@@ -92,24 +104,29 @@ Photons<N> trace_photons(const Problem<N>& problem, Work& work, Counters& counte
   std::uint64_t photons = 0;
   for (std::size_t b = 0; b < batches.size(); ++b)
     if (done[b] != 0) photons += std::min<std::uint64_t>(kGrain, wanted - b * kGrain);
+  result.count = photons;
   if (photons == 0) return result;
   const double n = static_cast<double>(photons);
   double squares = 0.0;
-  std::vector<std::uint32_t> arrived(problem.side_count(), 0);
+  std::vector<std::vector<std::uint32_t>> arrived(
+      problem.group_count(), std::vector<std::uint32_t>(problem.side_count(), 0));
   for (const Batch<N>& batch : batches) {
     add_deposits(problem, batch, n, arrived, result);
     result.escaped += batch.escaped / n;
     result.absorbed += batch.absorbed / n;
     squares += batch.squares / n;
   }
-  if (problem.specular) smooth_photons(problem, arrived, result.caustic);
+  if (problem.specular)
+    for (std::size_t g = 0; g < result.caustic.size(); ++g)
+      smooth_photons(problem, arrived[g], result.caustic[g]);
   const double mean = result.escaped + result.absorbed;
   result.variance = std::max(0.0, squares - mean * mean) / n;
   return result;
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Photons<N> trace_photons(const Problem<N>&, Work&, Counters&);
+  template Photons<N> trace_photons(const Problem<N>&, Work&, Counters&);                \
+  template Photons<N> trace_photons(const Problem<N>&, std::uint64_t, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

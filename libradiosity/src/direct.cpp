@@ -1,85 +1,51 @@
+#include "hemisphere.h"
 #include "passes.h"
 
 namespace atrium::radiosity {
+namespace {
 
 using scene::Counter;
 using scene::Counters;
-
-double Replicates::variance_of_mean() const {
-  int groups = 0;
-  int samples = 0;
-  double total = 0.0;
-  for (std::size_t g = 0; g < sum_.size(); ++g) {
-    groups += count_[g] > 0 ? 1 : 0;
-    samples += count_[g];
-    total += sum_[g];
-  }
-  if (groups < 2) return 0.0;
-  const double mean = total / samples;
-  double squares = 0.0;
-  for (std::size_t g = 0; g < sum_.size(); ++g) {
-    if (count_[g] == 0) continue;
-    const double d = sum_[g] - mean * count_[g];
-    squares += d * d;
-  }
-  return squares * groups / ((groups - 1.0) * samples * samples);
-}
-
-namespace {
 
 /// Light samples of one side.
 template <int N>
 class SideLight {
  public:
-  SideLight(const Problem<N>& problem, int samples, DirectLights which)
+  SideLight(const Problem<N>& problem, DirectLights which)
       : problem_(problem),
-        samples_(samples),
         which_(which),
         light_count_(problem.shading.scene().lights.size()) {}
 
-  void measure(SideIndex i, Estimate<N>& result, Counters& counters) const {
-    const bool coupled = problem_.sides.coupled[i / 2] != 0;
-    const float share = 1.0f / static_cast<float>(samples_);
-    Spectrum<N> plain, body;
-    Replicates spread;
-    for (int k = 0; k < samples_; ++k) {
-      const Arrival a = arrive(i, k, coupled, counters);
-      plain += a.irradiance;
-      body += a.irradiance * a.body_weight;
-      spread.add(k, samples_, static_cast<double>(a.irradiance.mean()));
-    }
-    result.irradiance.plain[i] = plain * share;
-    if (!result.irradiance.body.empty()) result.irradiance.body[i] = body * share;
-    result.variance[i] = static_cast<float>(spread.variance_of_mean());
-  }
-
- private:
-  struct Arrival {
-    Spectrum<N> irradiance;
-    Spectrum<N> body_weight = Spectrum<N>::one();
-  };
-
-  Arrival arrive(SideIndex i, int k, bool coupled, Counters& counters) const {
-    scene::Sampler sampler(problem_.options.seed ^ 0xd17ec7U, i, static_cast<std::uint32_t>(k));
+  /// \return  false if the point lies inside a closed body; asked only where `mixed`.
+  bool measure(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+               Counters& counters, bool mixed) const {
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0xd17ec7U, replicate),
+                           problem_.stream(i), index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
     const float choice = sampler.next_1d();
-    const auto s = problem_.shading.lights().sample(p.position, normal, choice, sampler.next_2d());
-    Arrival result;
-    if (!s || !(s->pdf > 0.0f)) return result;
+    const Vec2f u = sampler.next_2d();
+    if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return false;
+    const auto s = problem_.shading.lights().sample(p.position, normal, choice, u);
+    if (!s || !(s->pdf > 0.0f)) return true;
     const bool is_surface = !s->dirac && s->light >= light_count_ && std::isfinite(s->distance);
-    if (which_ == DirectLights::NoSurfaces && is_surface) return result;
+    if (which_ == DirectLights::NoSurfaces && is_surface) return true;
     const float cosine = s->wi.dot(normal);
-    if (!(cosine > 0.0f) || s->radiance.is_zero()) return result;
+    if (!(cosine > 0.0f) || s->radiance.is_zero()) return true;
     const Spectrum<N> arriving =
         problem_.shading.visibility(p, *s, counters, Counter::RaysDirect) * s->radiance;
-    result.irradiance = arriving * (cosine / s->pdf);
-    if (coupled) result.body_weight = problem_.shading.interact(p, normal).bsdf.body_weight(cosine);
-    return result;
+    if (arriving.is_zero()) return true;
+    const Spectrum<N> irradiance = arriving * (cosine / s->pdf);
+    const bool coupled = problem_.sides.coupled[i / 2] != 0;
+    const Spectrum<N> body =
+        coupled ? irradiance * problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
+                : irradiance;
+    sums.add(0, replicate, irradiance, body);
+    return true;
   }
 
+ private:
   const Problem<N>& problem_;
-  int samples_;
   DirectLights which_;
   std::size_t light_count_;
 };
@@ -87,19 +53,46 @@ class SideLight {
 }  // namespace
 
 template <int N>
-Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
-                         Counters& counters) {
+bool sample_direct(const Problem<N>& problem, DirectLights which,
+                   const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
+                   Tally<N>& tally, Work& work, Counters& counters) {
+  if (problem.shading.lights().empty()) return true;
+  const SideLight<N> light(problem, which);
+  return draw_samples(plan, tally, work, counters,
+                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+                          Counters& c) {
+                        return light.measure(i, replicate, index, sums, c,
+                                             !mixed.empty() && mixed[i] != 0);
+                      });
+}
+
+template <int N>
+Estimate<N> estimate_of(const Tally<N>& tally, const Problem<N>& problem) {
   Estimate<N> result(problem.side_count(), problem.sides.any_coupled);
-  if (problem.shading.lights().empty()) return result;
-  const SideLight<N> light(problem, std::max(1, samples), which);
-  const std::vector<SideIndex>& active = problem.sides.active;
-  work.run(active.size(), 128, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
-    for (std::size_t k = begin; k < end; ++k) light.measure(active[k], result, c);
-  });
+  for (const SideIndex i : problem.sides.active)
+    for (std::size_t g = 0; g < tally.groups(); ++g) {
+      result.irradiance.plain[i] += tally.mean(i, g);
+      if (problem.sides.any_coupled) result.irradiance.body[i] += tally.mean_body(i, g);
+    }
+  for (const SideIndex i : problem.sides.active)
+    result.variance[i] = static_cast<float>(tally.variance(i));
   return result;
 }
 
-#define ATRIUM_INSTANTIATE(N) \
+template <int N>
+Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
+                         Counters& counters) {
+  Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
+  sample_direct(problem, which, {}, top_up(problem, tally, problem.sides.active, samples), tally, work,
+                counters);
+  return estimate_of(tally, problem);
+}
+
+#define ATRIUM_INSTANTIATE(N)                                                              \
+  template bool sample_direct(const Problem<N>&, DirectLights,                             \
+                              const std::vector<std::uint8_t>&, const std::vector<Draw>&,  \
+                              Tally<N>&, Work&, Counters&);                                \
+  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                    \
   template Estimate<N> direct_light(const Problem<N>&, int, DirectLights, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

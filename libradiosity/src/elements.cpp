@@ -150,11 +150,13 @@ class Builder {
   void cut(std::size_t object) {
     const Corners corners = object_corners(scene_, ObjectId(object));
     for (const Facet& f : parts_[object].facets)
-      parts_[object].cuts.push_back(cut_facet(corners, f, cell_, cap_));
+      parts_[object].cuts.push_back(cut_facet(corners, f, ObjectId(object), cell_, cap_));
   }
 
   Elements assemble() {
     Elements e;
+    e.max_level = options_.max_level;
+    e.min_element_size = options_.min_element_size;
     SurfaceField& field = e.layout;
     field.triangle_facet.assign(scene_.triangle_count(), SurfaceField::kNone);
     e.first_piece.push_back(0);
@@ -163,29 +165,29 @@ class Builder {
         append(e, object, parts_[object].facets[k], parts_[object].cuts[k]);
       parts_[object] = {};
     }
+    e.pieces.shrink_to_fit();
     return e;
   }
 
   void append(Elements& e, std::size_t object, const Facet& facet, CutFacet& cut) {
     SurfaceField& field = e.layout;
     const auto facet_id = static_cast<std::uint32_t>(field.facets.size());
-    const auto first_element = static_cast<std::uint32_t>(field.element_facet.size());
-    cut.grid.first_cell = static_cast<std::uint32_t>(field.cell_element.size());
-    field.facets.push_back(cut.grid);
-    field.cell_element.resize(field.cell_element.size() + cut.cell_count(), SurfaceField::kNone);
+    SurfaceField::Facet& grid = field.facets.emplace_back(cut.grid);
+    grid.first_cell = static_cast<std::uint32_t>(field.nodes.size());
+    field.nodes.resize(field.nodes.size() + std::size_t{grid.nx} * grid.ny, SurfaceField::kNone);
     for (const std::uint32_t t : facet.triangles)
       field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
     for (std::size_t k = 0; k < cut.element_cell.size(); ++k) {
       const std::uint32_t cell = cut.element_cell[k];
-      field.cell_element[cut.grid.first_cell + cell] =
-          first_element + static_cast<std::uint32_t>(k);
+      field.nodes[grid.first_cell + cell] = static_cast<std::uint32_t>(field.element_count());
       field.element_facet.push_back(facet_id);
-      field.element_cell.push_back(cell);
+      field.element_level.push_back(0);
+      field.element_x.push_back(cell % grid.nx);
+      field.element_y.push_back(cell / grid.nx);
       float area = 0.0f;
       for (std::uint32_t p = cut.first_piece[k]; p < cut.first_piece[k + 1]; ++p) {
         area += cut.pieces[p].area;
-        cut.pieces[p].object = ObjectId(object);
-        e.pieces.push_back(std::move(cut.pieces[p]));
+        e.pieces.push_back(cut.pieces[p]);
       }
       field.element_area.push_back(area);
       e.first_piece.push_back(static_cast<std::uint32_t>(e.pieces.size()));

@@ -71,7 +71,8 @@ class Exporter {
     for (std::uint32_t e = 0; e + 1 < elements_.first_piece.size(); ++e)
       for (std::uint32_t p = elements_.first_piece[e]; p < elements_.first_piece[e + 1]; ++p)
         element_of_[p] = e;
-    for (const ElementPiece& piece : elements_.pieces) {
+    for (std::size_t p = 0; p < elements_.pieces.size(); ++p) {
+      const ElementPiece piece = elements_.pieces[p];
       first_point_.push_back(mesh_.points.size());
       mesh_.polygon_sizes.push_back(static_cast<std::uint32_t>(piece.corners.size()));
       for (const Vec3f& c : piece.corners) {
@@ -83,7 +84,7 @@ class Exporter {
 
   void evaluate(std::size_t p, std::vector<Record>& cell, std::vector<Record>& point,
                 std::vector<Rgb>& reflectance, std::vector<Rgb>& emission) const {
-    const ElementPiece& piece = elements_.pieces[p];
+    const ElementPiece piece = elements_.pieces[p];
     const Vec2f uv = barycentric_centre(piece);
     const scene::SurfacePoint at =
         scene::surface_point(scene_, piece.object, piece.triangle, uv.x(), uv.y());
@@ -210,7 +211,7 @@ class Exporter {
     add("stderr_back",
         [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U + 1U]; });
     add("element_id", [&](std::size_t p) { return element_of_[p]; });
-    add("level", [](std::size_t) { return 0; });
+    add("level", [&](std::size_t p) { return field_.element_level[element_of_[p]]; });
     add("material_id", [&](std::size_t p) { return scene_.objects[object(p)].material.value; });
     add("object_id", object);
     add("front_valid", [&](std::size_t p) { return field_.valid[element_of_[p] * 2U]; });

@@ -1,6 +1,7 @@
 #include "follow.h"
 #include "hemisphere.h"
 #include "passes.h"
+#include "segment.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -11,81 +12,131 @@ using scene::Counters;
 template <int N>
 class Gatherer {
  public:
-  Gatherer(const Problem<N>& problem, const SideValues<N>& field)
-      : problem_(problem), field_(field), count_(problem.options.gather_rays) {}
+  Gatherer(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
+           const HotPatches<N>& hot)
+      : problem_(problem), field_(field), hot_(hot) {}
 
-  void gather(SideIndex i, Gathered<N>& result, Counters& counters) const {
-    Spectrum<N> plain, body;
-    Replicates spread;
-    std::uint32_t valid = 0;
-    for (int k = 0; k < count_; ++k) {
-      const auto index = static_cast<std::uint32_t>(std::max(0, problem_.options.row_rays) + k);
-      scene::Sampler sampler(problem_.options.seed, i, index);
-      const HemisphereRay<N> start(problem_, i, sampler);
-      Spectrum<N> arriving;
-      const PathEnd<N> end =
-          follow<N>(problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
-                    Counter::RaysRow, counters,
-                    [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight,
-                        bool) { arriving += weight * radiosity_at(at, wo); });
-      if (end.inside_solid) continue;
-      ++valid;
-      plain += arriving;
-      body += arriving * start.body_weight;
-      spread.add(k, count_, static_cast<double>(arriving.mean()));
-    }
-    store(i, plain, body, valid, spread, result);
+  bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+              Counters& counters) const {
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x6a74e5U, replicate),
+                           problem_.stream(i), index);
+    const HemisphereRay<N> start(problem_, i, sampler);
+    const PathEnd<N> end = follow<N>(
+        problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
+        Counter::RaysRow, counters,
+        [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight,
+            bool specular) {
+          const SideIndex j = problem_.side_at(at.point, at.side);
+          if (j == kNoSide) return;
+          const float share =
+              specular ? 1.0f : share_of_chance(hot_, start, at.point.position, at.ng, j);
+          for (std::size_t g = 0; g < field_.size(); ++g) {
+            const Spectrum<N> arriving = weight * radiosity_at(at, wo, j, g, share);
+            if (!arriving.is_zero())
+              sums.add(g, replicate, arriving, arriving * start.body_weight);
+          }
+        });
+    return !end.inside_solid;
   }
 
  private:
-  /// Reflectance of the very point (textures) times irradiance of its element.
-  Spectrum<N> radiosity_at(const scene::Interaction<N>& at, const Vec3f& wo) const {
-    const SideIndex j = problem_.side_at(at.point, at.side);
-    if (j == kNoSide) return {};
-    if (at.bsdf.coupled()) return leaving(j);
-    return at.bsdf.diffuse_reflectance(wo) * field_[j] +
-           at.bsdf.diffuse_transmittance() * field_[j ^ 1U];
-  }
-  Spectrum<N> leaving(SideIndex j) const {
-    return atrium::radiosity::leaving(problem_.sides, j, field_[j], field_[j ^ 1U]);
-  }
-
-  static void store(SideIndex i, const Spectrum<N>& plain, const Spectrum<N>& body,
-                    std::uint32_t valid, const Replicates& spread, Gathered<N>& result) {
-    result.rays[i] = valid;
-    if (valid == 0) return;
-    const float share = 1.0f / static_cast<float>(valid);
-    result.estimate.irradiance.plain[i] = plain * share;
-    if (!result.estimate.irradiance.body.empty()) result.estimate.irradiance.body[i] = body * share;
-    result.estimate.variance[i] = static_cast<float>(spread.variance_of_mean());
+  /// Radiosity at a point of side j: reflectance of the very point (textures) times irradiance of
+  /// its element. Of the light that hot patches got first, only `share`.
+  Spectrum<N> radiosity_at(const scene::Interaction<N>& at, const Vec3f& wo, SideIndex j,
+                           std::size_t group, float share) const {
+    Spectrum<N> own = field_[group][j];
+    const Spectrum<N>& other = field_[group][j ^ 1U];
+    if (share != 1.0f) own -= (1.0f - share) * hot_.source(j, group);
+    if (at.bsdf.coupled()) return leaving(problem_.sides, j, own, other);
+    return at.bsdf.diffuse_reflectance(wo) * own + at.bsdf.diffuse_transmittance() * other;
   }
 
   const Problem<N>& problem_;
-  const SideValues<N>& field_;
-  int count_;
+  const std::vector<SideValues<N>>& field_;
+  const HotPatches<N>& hot_;
+};
+
+template <int N>
+class HotSampler {
+ public:
+  HotSampler(const Problem<N>& problem, const HotPatches<N>& hot) : problem_(problem), hot_(hot) {}
+
+  /// \return  false if the point lies inside a closed body; asked only where `mixed`.
+  bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+              Counters& counters, bool mixed) const {
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x407caU, replicate),
+                           problem_.stream(i), index);
+    const scene::SurfacePoint from = problem_.points.sample(i / 2, sampler.next_2d());
+    const SideIndex j = hot_.sample(sampler.next_1d());
+    const scene::SurfacePoint to = problem_.points.sample(j / 2, sampler.next_2d());
+    const Vec3f normal = side_of(i) == scene::Side::Front ? from.ng : Vec3f(-from.ng);
+    if (mixed && is_buried(problem_, from, normal, sampler.next_2d(), counters)) return false;
+    const Vec3f facing = side_of(j) == scene::Side::Front ? to.ng : Vec3f(-to.ng);
+    const Vec3f d = to.position - from.position;
+    if (!(d.squaredNorm() > 0.0f)) return true;
+    const Vec3f wi = d.normalized();
+    const float receiver_cosine = wi.dot(normal);
+    const float sender_cosine = -wi.dot(facing);
+    // What rounding alone lifts out of the other's plane exchanges nothing.
+    const float least = 2.0f * (from.error + to.error) / d.norm();
+    if (!(receiver_cosine > least) || !(sender_cosine > least)) return true;
+    const Spectrum<N> seen =
+        problem_.shading.transmittance(segment(from, to), counters, Counter::RaysRow);
+    if (seen.is_zero()) return true;
+    // cos / pi over the density, times the share of this strategy.
+    const float weight = hot_.share_of_chance(j, d, receiver_cosine, sender_cosine);
+    const scene::Interaction<N> at = problem_.shading.interact(to, -wi);
+    const Spectrum<N> body =
+        problem_.sides.coupled[i / 2] != 0
+            ? problem_.shading.interact(from, normal).bsdf.body_weight(receiver_cosine)
+            : Spectrum<N>::one();
+    for (std::size_t g = 0; g < hot_.groups(); ++g) {
+      const Spectrum<N> reflectance = at.bsdf.coupled()
+                                          ? problem_.sides.reflectance[j]
+                                          : at.bsdf.diffuse_reflectance(at.to_local(-wi));
+      const Spectrum<N> arriving = seen * reflectance * hot_.source(j, g) * weight;
+      if (!arriving.is_zero()) sums.add(g, replicate, arriving, arriving * body);
+    }
+    return true;
+  }
+
+ private:
+  const Problem<N>& problem_;
+  const HotPatches<N>& hot_;
 };
 
 }  // namespace
 
 template <int N>
-Gathered<N> gather(const Problem<N>& problem, const SideValues<N>& field, Work& work,
-                   Counters& counters) {
-  const std::size_t n = problem.side_count();
-  Gathered<N> result{.estimate = Estimate<N>(n, problem.sides.any_coupled),
-                     .rays = std::vector<std::uint32_t>(n, 0)};
-  const std::vector<SideIndex>& active = problem.sides.active;
-  std::vector<SideIndex> lit;
-  for (const SideIndex i : active)
-    if (!field[i].is_zero()) lit.push_back(i);
-  const Gatherer<N> gatherer(problem, field);
-  work.run(lit.size(), 128, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
-    for (std::size_t k = begin; k < end; ++k) gatherer.gather(lit[k], result, c);
-  });
-  return result;
+bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
+                   const HotPatches<N>& hot, const std::vector<Draw>& plan, Tally<N>& tally,
+                   Work& work, Counters& counters) {
+  const Gatherer<N> gatherer(problem, field, hot);
+  return draw_samples(plan, tally, work, counters,
+                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+                          Counters& c) { return gatherer.sample(i, replicate, index, sums, c); });
 }
 
-#define ATRIUM_INSTANTIATE(N) \
-  template Gathered<N> gather(const Problem<N>&, const SideValues<N>&, Work&, Counters&);
+template <int N>
+bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
+                const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
+                Tally<N>& tally, Work& work, Counters& counters) {
+  if (hot.empty()) return true;
+  const HotSampler<N> sampler(problem, hot);
+  return draw_samples(plan, tally, work, counters,
+                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
+                          Counters& c) {
+                        return sampler.sample(i, replicate, index, sums, c, mixed[i] != 0);
+                      });
+}
+
+#define ATRIUM_INSTANTIATE(N)                                                                    \
+  template bool sample_gather(const Problem<N>&, const std::vector<SideValues<N>>&,              \
+                              const HotPatches<N>&, const std::vector<Draw>&, Tally<N>&, Work&,  \
+                              Counters&);                                                        \
+  template bool sample_hot(const Problem<N>&, const HotPatches<N>&,                              \
+                           const std::vector<std::uint8_t>&, const std::vector<Draw>&, Tally<N>&, \
+                           Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -3,39 +3,33 @@
 #include <cstdint>
 #include <vector>
 
+#include "hot_patches.h"
 #include "problem.h"
 #include "rows.h"
+#include "tally.h"
 
 namespace atrium::radiosity {
-
-/// Mean over a few groups of samples: their spread gives the standard error, whatever the
-/// correlation of the samples within a group.
-class Replicates {
- public:
-  static constexpr int kGroups = 8;
-  void add(int sample, int samples, double value) {
-    const int g = sample * kGroups / samples;
-    sum_[static_cast<std::size_t>(g)] += value;
-    ++count_[static_cast<std::size_t>(g)];
-  }
-  /// Variance of the mean of all samples; 0 if fewer than two groups have samples.
-  [[nodiscard]] double variance_of_mean() const;
-
- private:
-  std::array<double, kGroups> sum_{};
-  std::array<int, kGroups> count_{};
-};
 
 /// An irradiance with the variance of its lane mean, by side.
 template <int N>
 struct Estimate {
   Irradiance<N> irradiance;
   std::vector<float> variance;
-  Estimate(std::size_t sides, bool body) : irradiance(sides, body), variance(sides, 0.0f) {}
+  explicit Estimate(std::size_t sides = 0, bool body = false) : irradiance(sides, body), variance(sides, 0.0f) {}
 };
 
-/// Light that arrives straight or through panes. \param counted  which lights take part.
+template <int N>
+[[nodiscard]] Estimate<N> estimate_of(const Tally<N>& tally, const Problem<N>& problem);
+
+/// Light that arrives straight or through panes: draws the samples of `plan` into the tally.
+/// \param which  lights that take part. \param mixed  by side: may a part of it lie inside a closed
+/// body? Points there count for nothing. Empty: no side is.
 enum class DirectLights { All, NoSurfaces };
+template <int N>
+bool sample_direct(const Problem<N>& problem, DirectLights which,
+                   const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
+                   Tally<N>& tally, Work& work, scene::Counters& counters);
+/// The same for solvers that need one estimate of all groups, `samples` for every active side.
 template <int N>
 [[nodiscard]] Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which,
                                        Work& work, scene::Counters& counters);
@@ -43,11 +37,16 @@ template <int N>
 /// Light that arrives through mirrors, solids and lobes, and where the rest of the photons went.
 template <int N>
 struct Photons {
-  Estimate<N> caustic;
+  std::vector<Estimate<N>> caustic;  ///< by light group
+  std::uint64_t count = 0;
   double escaped = 0.0;   ///< flux that left the scene before any diffuse surface
   double absorbed = 0.0;  ///< flux lost at or in specular things before that
   double variance = 0.0;  ///< of escaped + absorbed
 };
+template <int N>
+[[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,
+                                       scene::Counters& counters);
+/// As many as the scene needs by the options.
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, Work& work,
                                        scene::Counters& counters);
@@ -60,15 +59,18 @@ template <int N>
 void smooth_photons(const Problem<N>& problem, const std::vector<std::uint32_t>& photons,
                     Estimate<N>& caustic);
 
-/// One bounce against a known field with fresh rays. `rays` is 0 for sides that were skipped.
+/// One bounce against a known field with fresh hemisphere rays.
+/// \param field  exchange irradiance by group, all light. \param hot  their own light only with
+/// the balance heuristic's share, see sample_hot.
 template <int N>
-struct Gathered {
-  Estimate<N> estimate;
-  std::vector<std::uint32_t> rays;
-};
-/// \param field  exchange irradiance of every side (E_B where coupled), all light.
+bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
+                   const HotPatches<N>& hot, const std::vector<Draw>& plan, Tally<N>& tally,
+                   Work& work, scene::Counters& counters);
+
+/// The rest of the light of hot patches: points on them chosen by flux.
 template <int N>
-[[nodiscard]] Gathered<N> gather(const Problem<N>& problem, const SideValues<N>& field, Work& work,
-                                 scene::Counters& counters);
+bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
+                const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
+                Tally<N>& tally, Work& work, scene::Counters& counters);
 
 }  // namespace atrium::radiosity

@@ -25,7 +25,7 @@ ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements
 namespace {
 
 /// A point in a convex polygon: the fan triangle by u.x, then uniform within it.
-Vec3f sample_polygon(const std::vector<Vec3f>& corners, Vec2f u) {
+Vec3f sample_polygon(std::span<const Vec3f> corners, Vec2f u) {
   std::array<float, 16> areas{};
   const std::size_t fans = std::min(corners.size() - 2, areas.size());
   float total = 0.0f;
@@ -60,7 +60,7 @@ SurfacePoint ElementPoints::sample(std::uint32_t element, const Vec2f& u) const 
   const auto last = area_until_.begin() + elements_->first_piece[element + 1];
   const float x = u.x() * *(last - 1);
   const auto it = std::min(std::upper_bound(first, last, x), last - 1);
-  const ElementPiece& piece = elements_->pieces[static_cast<std::size_t>(it - area_until_.begin())];
+  const ElementPiece piece = elements_->pieces[static_cast<std::size_t>(it - area_until_.begin())];
   const float before = it == first ? 0.0f : *(it - 1);
   const float rest = *it > before ? std::clamp((x - before) / (*it - before), 0.0f, 1.0f) : 0.5f;
   const Vec3f p = sample_polygon(piece.corners, {rest, u.y()});
@@ -84,7 +84,7 @@ class SideProperties {
       : shading_(shading), elements_(elements), points_(points), seed_(seed) {}
 
   void find(Sides<N>& sides, std::uint32_t element) const {
-    const ElementPiece& piece = elements_.pieces[elements_.first_piece[element]];
+    const ElementPiece piece = elements_.pieces[elements_.first_piece[element]];
     const scene::Object& object = shading_.scene().objects[piece.object.value];
     const auto& material = shading_.material(object.material);
     const bool colours = !shading_.scene().meshes[object.mesh.value].colors.empty();
@@ -173,6 +173,13 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
       points(shading_in.scene(), elements_in),
       specular(specular_scene(shading_in.scene())) {
   const std::size_t n = side_count();
+  // By place, not by number: what is known of an element stays when others are divided.
+  for (SideIndex i = 0; i < n; ++i) {
+    const std::uint64_t key = element_key(elements.layout, i / 2);
+    streams_.push_back(scene::hash_combine(
+        scene::hash_combine(static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key)),
+        i & 1U));
+  }
   sides.is_active.assign(n, 0);
   sides.reflectance.assign(n, {});
   sides.transmittance.assign(n, {});

@@ -20,6 +20,11 @@ inline constexpr SideIndex kNoSide = 0xffffffffU;
 }
 [[nodiscard]] inline scene::Side side_of(SideIndex i) { return static_cast<scene::Side>(i & 1U); }
 
+/// Samples of an element of some level, given those of level 0.
+[[nodiscard]] inline int samples_at_level(int samples, int level) {
+  return std::min(samples, std::max(8, samples >> std::min(level, 8)));
+}
+
 /// Draws points on an element, uniform by area.
 class ElementPoints {
  public:
@@ -58,10 +63,17 @@ struct Problem {
   Sides<N> sides;
   bool specular = false;  ///< does anything mirror, refract or gloss?
 
+  [[nodiscard]] std::size_t group_count() const { return 1; }
   [[nodiscard]] std::size_t side_count() const { return elements.layout.element_count() * 2; }
   [[nodiscard]] float area(SideIndex i) const { return elements.layout.element_area[i / 2]; }
+  [[nodiscard]] int level(SideIndex i) const { return elements.layout.element_level[i / 2]; }
+  /// Number of a side's own random sequence.
+  [[nodiscard]] std::uint32_t stream(SideIndex i) const { return streams_[i]; }
   /// The active side that a hit belongs to, or kNoSide.
   [[nodiscard]] SideIndex side_at(const scene::SurfacePoint& point, scene::Side side) const;
+
+ private:
+  std::vector<std::uint32_t> streams_;
 };
 
 /// A function of the active sides, by SideIndex; empty vectors read as "not computed".

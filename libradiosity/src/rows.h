@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hot_patches.h"
 #include "problem.h"
 
 namespace atrium::radiosity {
@@ -24,8 +25,15 @@ struct Rows {
   std::vector<std::uint32_t> rays;     ///< valid ones, by active side
   std::vector<std::uint32_t> dropped;  ///< origins inside closed bodies
   std::vector<float> escaped;          ///< summed weight that left the scene, lane mean
+  /// Summed first light of hot patches that rays found by chance: plain and body irradiance by
+  /// group, by active side. It is not in what the entries read. Empty without hot patches.
+  std::vector<Spectrum<N>> hot;
+  std::size_t groups = 0;
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
+  [[nodiscard]] Spectrum<N> hot_sum(std::size_t k, std::size_t group, bool body) const {
+    return hot.empty() ? Spectrum<N>() : hot[(k * groups + group) * 2 + (body ? 1 : 0)];
+  }
   /// Sum over the row of weight * values[target].
   [[nodiscard]] Spectrum<N> apply(std::size_t k, const SideValues<N>& values, bool body) const {
     Spectrum<N> sum;
@@ -39,27 +47,25 @@ struct Rows {
     }
     return sum;
   }
+  /// Variance that a row takes over from independent errors of what it sees.
+  [[nodiscard]] double apply_squared(std::size_t k, const std::vector<double>& variance) const {
+    if (rays[k] == 0) return 0.0;
+    double sum = 0.0;
+    for (std::uint64_t e = first[k]; e < first[k + 1]; ++e) {
+      const double weight = static_cast<double>(entries[e].weight) / rays[k];
+      sum += weight * weight * variance[entries[e].target & ~kChromatic];
+    }
+    return sum;
+  }
 };
 
+/// \param hot  shot besides, see sample_hot; the same in all calls for the same rows.
 /// Traces rays [first_ray, last_ray) of every active side whose `wanted` is set and adds them to
 /// the rows of `old` (empty: none).
 template <int N>
-[[nodiscard]] Rows<N> trace_rows(const Problem<N>& problem, Rows<N> old,
+[[nodiscard]] Rows<N> trace_rows(const Problem<N>& problem, const HotPatches<N>& hot, Rows<N> old,
                                  const std::vector<std::uint8_t>& wanted, int first_ray,
                                  int last_ray, Work& work, scene::Counters& counters);
-
-struct Iteration {
-  int iterations = 0;
-  double residual = 0.0;  ///< last change of radiosity, relative to its maximum
-  bool converged = false;
-};
-
-/// Solves I = constant + W (rho (source + I) + tau (source + I)_other side) for the exchange
-/// irradiance I of the active sides (E_B where coupled). `result` is the start value.
-/// \throws Error  if the light does not decay: a closed enclosure that reflects everything.
-template <int N>
-Iteration solve_rows(const Problem<N>& problem, const Rows<N>& rows, const SideValues<N>& source,
-                     const SideValues<N>& constant, SideValues<N>& result, Work& work);
 
 /// Radiosity that leaves each side given the exchange irradiance of all.
 template <int N>

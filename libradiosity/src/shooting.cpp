@@ -38,7 +38,7 @@ class ShootingSolver {
     // Hemisphere rays count what escapes; the exchange itself does not need them.
     constexpr int kEscapeRays = 16;
     const Rows<N> rows =
-        trace_rows<N>(problem_, {}, std::vector<std::uint8_t>(problem_.sides.active.size(), 1), 0,
+        trace_rows<N>(problem_, {}, {}, std::vector<std::uint8_t>(problem_.sides.active.size(), 1), 0,
                       kEscapeRays, work_, counters_);
     result_.flux = flux_balance(problem_, result_, photons, rows);
     return std::move(result_);

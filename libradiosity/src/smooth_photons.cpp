@@ -28,7 +28,7 @@ struct Places {
       float area = 0.0f;
       for (std::uint32_t p = problem.elements.first_piece[e];
            p < problem.elements.first_piece[e + 1]; ++p) {
-        const ElementPiece& piece = problem.elements.pieces[p];
+        const ElementPiece piece = problem.elements.pieces[p];
         Vec3f center = Vec3f::Zero();
         for (const Vec3f& c : piece.corners) center += c;
         sum += center * (piece.area / static_cast<float>(piece.corners.size()));
@@ -38,7 +38,7 @@ struct Places {
       position[2 * e] = position[2 * e + 1] = area > 0.0f ? Vec3f(sum / area) : facet.origin;
       normal[2 * e] = n;
       normal[2 * e + 1] = -n;
-      size[e] = 1.0f / facet.axis_u.norm();
+      size[e] = f.element_size(e);
     }
   }
 };

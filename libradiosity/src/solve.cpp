@@ -1,5 +1,6 @@
 #include "radiosity/solve.h"
 
+#include "adapt_mesh.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -50,8 +51,26 @@ void complete_body(Estimate<N>& e, const Problem<N>& problem) {
     if (problem.sides.coupled[i / 2] == 0) e.irradiance.body[i] = e.irradiance.plain[i];
 }
 
+/// The mesh that the solver works on. Only rows gain by elements of several sizes.
 template <int N>
-Solution<N> run_solver(const Problem<N>& problem, Work& work, scene::Counters& counters) {
+AdaptedMesh<N> make_mesh(const scene::Shading<N>& shading, const SolveOptions& options, Work& work,
+                         scene::Counters& counters) {
+  const bool adapt = options.solver == Solver::Rows && options.max_level > 0;
+  // Room for what is divided; a mesh of an asked size is asked for as it is.
+  const auto start = adapt ? static_cast<std::uint32_t>(0.6 * options.max_elements) + 1
+                           : options.max_elements;
+  work.begin("elements", 0.02);
+  Elements elements = make_elements(shading.scene(), {.element_size = options.element_size,
+                                                      .max_elements = start,
+                                                      .max_level = options.max_level});
+  if (!adapt) return {std::move(elements), {}, 0.0};
+  work.begin("mesh", 0.1);
+  return adapt_mesh(shading, std::move(elements), options, work, counters);
+}
+
+template <int N>
+Solution<N> run_solver(const Problem<N>& problem, Tally<N> direct, Work& work,
+                       scene::Counters& counters) {
   switch (problem.options.solver) {
     case Solver::Matrix:
       return solve_with_matrix(problem, work, counters);
@@ -60,15 +79,20 @@ Solution<N> run_solver(const Problem<N>& problem, Work& work, scene::Counters& c
     case Solver::Rows:
       break;
   }
-  return solve_with_rows(problem, work, counters);
+  return solve_with_rows(problem, std::move(direct), work, counters);
 }
 
 template <int N>
 void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& basis,
                  const SolveOptions& options, Work& work, SolveResult& result) {
-  const scene::Shading<N> shading(query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
+  const scene::Shading<N> shading(
+      query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
+  AdaptedMesh<N> mesh = make_mesh(shading, options, work, result.counters);
+  result.elements = std::move(mesh.elements);
+  result.mesh_error = mesh.error;
+  result.counters[Counter::Elements] += result.elements.layout.element_count();
   const Problem<N> problem(shading, result.elements, options);
-  Solution<N> solution = run_solver(problem, work, result.counters);
+  Solution<N> solution = run_solver(problem, std::move(mesh.direct), work, result.counters);
   complete_body(solution.direct, problem);
   complete_body(solution.caustic, problem);
   complete_body(solution.indirect, problem);
@@ -92,10 +116,6 @@ SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& b
                   const SolveOptions& options, const scene::Control& control) {
   Work work(control, options.time_limit);
   SolveResult result;
-  work.begin("elements", 0.02);
-  result.elements = make_elements(
-      query.scene(), {.element_size = options.element_size, .max_elements = options.max_elements});
-  result.counters[Counter::Elements] += result.elements.layout.element_count();
   with_lanes(basis.lanes(),
              [&](auto lanes) { solve_lanes<lanes()>(query, basis, options, work, result); });
   result.field.unit = query.scene().unit == scene::RadianceUnit::Nit ? "lx" : "W/m^2";

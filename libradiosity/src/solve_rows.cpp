@@ -1,3 +1,4 @@
+#include "error_control.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -6,189 +7,518 @@ namespace {
 using scene::Counter;
 using scene::Counters;
 
+constexpr int kPilot = 16;  ///< samples of each kind before anything is decided
+
+/// What the rows make of one light group.
+template <int N>
+struct GroupLight {
+  Irradiance<N> direct, caustic, indirect;
+  std::vector<float> variance;  ///< of their sum, sampling of this group only
+  SideValues<N> source;         ///< exchange irradiance from lights
+  SideValues<N> bounced;        ///< exchange irradiance of the rows' solution, later a better one
+  bool refined = false;         ///< is it better?
+  SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
+  std::optional<Smoothing<N>> smoothing;  ///< by the noise of the rows
+  SideValues<N> seen;                     ///< bounced, smoothed: what fresh rays read
+};
+
 template <int N>
 class RowSolver {
  public:
-  RowSolver(const Problem<N>& problem, Work& work, Counters& counters)
-      : problem_(problem), work_(work), counters_(counters), result_(problem) {}
+  RowSolver(const Problem<N>& problem, Tally<N> direct, Work& work, Counters& counters)
+      : problem_(problem),
+        work_(work),
+        counters_(counters),
+        result_(problem),
+        neighbours_(problem.elements.layout),
+        groups_(problem.group_count()),
+        direct_(direct.groups() > 0 ? std::move(direct)
+                                    : Tally<N>(problem.side_count(), problem.group_count(),
+                                               problem.sides.any_coupled)),
+        shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
+        gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
+        exposed_(problem.side_count(), 1.0f),
+        mixed_(problem.side_count(), 0) {}
 
   Solution<N> solve() {
     work_.begin("direct light", 0.15);
-    result_.direct = direct_light(problem_, problem_.options.direct_samples, DirectLights::All,
-                                  work_, counters_);
+    draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
     work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
-    Photons<N> photons = trace_photons(problem_, work_, counters_);
-    result_.caustic = std::move(photons.caustic);
+    photons_ = trace_photons(problem_, work_, counters_);
     build_rows();
     work_.begin("gathering", 0.98);
-    improve();
-    result_.flux = flux_balance(problem_, result_, photons, rows_);
+    draw_gather(top_up(problem_, gathered_, lit_sides(),
+                       by_error() ? kPilot : problem_.options.gather_rays));
+    assemble();
+    if (by_error()) reach_error();
+    result_.flux = flux_balance(problem_, result_, photons_, rows_);
     return std::move(result_);
   }
 
  private:
+  [[nodiscard]] bool by_error() const { return problem_.options.error > 0.0; }
+  [[nodiscard]] std::vector<SideValues<N>> sources() const {
+    std::vector<SideValues<N>> all;
+    for (const GroupLight<N>& g : groups_) all.push_back(g.source);
+    return all;
+  }
+
+  void draw_direct(const std::vector<SideIndex>& sides, int samples) {
+    draw_direct(top_up(problem_, direct_, sides, samples));
+  }
+  void draw_direct(const std::vector<Draw>& plan) {
+    sample_direct(problem_, DirectLights::All, mixed_, plan, direct_, work_, counters_);
+  }
+  void draw_hot(const std::vector<Draw>& plan) {
+    sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
+  }
+
+  void draw_gather(const std::vector<Draw>& plan) {
+    std::vector<SideValues<N>> field;
+    for (const GroupLight<N>& g : groups_) {
+      field.push_back(g.source);
+      for (const SideIndex i : problem_.sides.active) field.back()[i] += g.seen[i];
+    }
+    sample_gather(problem_, field, hot_, plan, gathered_, work_, counters_);
+  }
+
   /// A first round of rays for every side; more where it found light. A side that sees only dark
   /// or no surfaces with all of its first rays keeps those.
   void build_rows() {
-    constexpr int kFirstRound = 16;
     const int all = std::max(1, problem_.options.row_rays);
-    const int first = std::min(kFirstRound, all);
+    const int first = std::min(kPilot, all);
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
-    rows_ =
-        trace_rows<N>(problem_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_, counters_);
-    drop_buried();
-    solve_indirect();
+    take_direct();
+    hot_ = HotPatches<N>(problem_, sources());
+    know_hot_light();
+    rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
+                          counters_);
+    find_buried();
+    draw_direct_of_mixed();
+    take_direct();
+    draw_hot(top_up(problem_, shot_, problem_.sides.active, kPilot));
+    solve_bounces();
     if (first == all) return;
-    std::vector<std::uint8_t> lit(n, 0);
-    for (std::size_t k = 0; k < n; ++k) lit[k] = is_lit(problem_.sides.active[k]) ? 1 : 0;
     work_.begin("rows", 0.6);
-    rows_ = trace_rows<N>(problem_, std::move(rows_), lit, first, all, work_, counters_);
-    solve_indirect();
+    for (int from = first, to = 2 * first; from < all; from = to, to *= 2) {
+      to = std::min(to, all);
+      std::vector<std::uint8_t> wanted(n, 0);
+      for (std::size_t k = 0; k < n; ++k) {
+        const SideIndex i = problem_.sides.active[k];
+        wanted[k] = is_lit(i) && samples_at_level(all, problem_.level(i)) >= to ? 1 : 0;
+      }
+      rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
+    }
+    solve_bounces();
   }
 
-  bool is_lit(SideIndex i) const {
-    return !(source_[i].is_zero() && result_.indirect.irradiance.plain[i].is_zero() &&
-             indirect_[i].is_zero());
+  /// An error in the light of hot patches is one error of everything they light, so they get many
+  /// more light samples than others before it is used.
+  void know_hot_light() {
+    constexpr int kFirst = 256;
+    constexpr int kMost = 65536;
+    if (hot_.empty()) return;
+    const double allowed = by_error() ? std::pow(0.25 * problem_.options.error, 2) : 1.0;
+    for (int samples = kFirst; samples <= kMost && !work_.stopped(); samples *= 2) {
+      std::vector<Draw> plan;
+      for (const SideIndex i : hot_.sides())
+        plan.push_back({i, static_cast<std::uint32_t>(samples / kReplicates)});
+      draw_direct(plan);
+      take_direct();
+      hot_.set_source(sources());
+      if (hot_flux_variance() <= allowed) return;
+    }
   }
 
-  /// Points inside closed bodies receive nothing; the mean is over the others.
-  void drop_buried() {
-    buried_.assign(problem_.side_count(), 0.0f);
+  /// Relative variance of the whole flux that hot patches reflect first.
+  [[nodiscard]] double hot_flux_variance() const {
+    double flux = 0.0;
+    double variance = 0.0;
+    for (const SideIndex i : hot_.sides()) {
+      const double scale = static_cast<double>(problem_.area(i)) *
+                           static_cast<double>(problem_.sides.reflectance[i].mean());
+      double direct = 0.0;
+      for (std::size_t g = 0; g < groups_.size(); ++g)
+        direct += static_cast<double>(hot_.source(i, g).mean());
+      flux += scale * direct;
+      variance += scale * scale * direct_.variance(i);
+    }
+    return flux > 0.0 ? variance / (flux * flux) : 0.0;
+  }
+
+  [[nodiscard]] bool is_lit(SideIndex i) const {
+    return std::any_of(groups_.begin(), groups_.end(), [&](const GroupLight<N>& g) {
+      return !(g.source[i].is_zero() && g.bounced[i].is_zero());
+    });
+  }
+  [[nodiscard]] std::vector<SideIndex> lit_sides() const {
+    std::vector<SideIndex> lit;
+    for (const SideIndex i : problem_.sides.active)
+      if (is_lit(i)) lit.push_back(i);
+    return lit;
+  }
+
+  /// Points inside closed bodies receive nothing; means are over the others. Where a side has both,
+  /// every point's samples have to ask which it is.
+  void find_buried() {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
-      const std::uint32_t traced = rows_.rays[k] + rows_.dropped[k];
       if (rows_.dropped[k] == 0) continue;
-      buried_[i] = static_cast<float>(rows_.dropped[k]) / static_cast<float>(traced);
-      if (rows_.rays[k] == 0) {
-        result_.valid[i] = 0;
-        continue;
-      }
-      rescale(result_.direct, i, 1.0f / (1.0f - buried_[i]));
-      rescale(result_.caustic, i, 1.0f / (1.0f - buried_[i]));
+      const std::uint32_t traced = rows_.rays[k] + rows_.dropped[k];
+      exposed_[i] = static_cast<float>(rows_.rays[k]) / static_cast<float>(traced);
+      if (rows_.rays[k] == 0) result_.valid[i] = 0;
     }
-    source_.resize(problem_.side_count());
+  }
+  void draw_direct_of_mixed() {
+    std::vector<SideIndex> again;
     for (const SideIndex i : problem_.sides.active)
-      source_[i] = exchange(problem_, result_.direct.irradiance, i) +
-                   exchange(problem_, result_.caustic.irradiance, i);
+      if (exposed_[i] < 1.0f && result_.valid[i] != 0) again.push_back(i);
+    for (const SideIndex i : again) {
+      mixed_[i] = 1;
+      direct_.forget(i);
+    }
+    draw_direct(again, by_error() ? kPilot : problem_.options.direct_samples);
   }
 
-  static void rescale(Estimate<N>& e, SideIndex i, float factor) {
-    e.irradiance.plain[i] *= factor;
-    if (!e.irradiance.body.empty()) e.irradiance.body[i] *= factor;
-    e.variance[i] *= factor * factor;
+  /// What the lights' samples say so far becomes the source of every group.
+  void take_direct() {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      GroupLight<N>& light = groups_[g];
+      light.direct = Irradiance<N>(problem_.side_count(), problem_.sides.any_coupled);
+      light.caustic = photons_.caustic[g].irradiance;
+      light.source.assign(problem_.side_count(), {});
+      for (const SideIndex i : problem_.sides.active) {
+        const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
+        light.direct.plain[i] = direct_.mean(i, g);
+        light.caustic.plain[i] *= exposed;
+        if (problem_.sides.any_coupled) {
+          light.direct.body[i] = direct_.mean_body(i, g);
+          light.caustic.body[i] *= exposed;
+        }
+        light.source[i] =
+            exchange(problem_, light.direct, i) + exchange(problem_, light.caustic, i);
+      }
+    }
   }
 
-  void solve_indirect() {
-    indirect_.resize(problem_.side_count());
-    const SideValues<N> none(problem_.side_count());
-    const int before = result_.iteration.iterations;
-    result_.iteration = solve_rows(problem_, rows_, source_, none, indirect_, work_);
-    result_.iteration.iterations += before;
+  /// The rows' answer to the sources; later only what their changes add to the field that samples
+  /// made better in between.
+  void solve_bounces() {
+    Iteration slowest;
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      GroupLight<N>& g = groups_[n];
+      SideValues<N> shot(problem_.side_count());
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const SideIndex i = problem_.sides.active[k];
+        const bool body = problem_.sides.coupled[i / 2] != 0;
+        shot[i] = shot_light(i, n, body);
+        if (rows_.rays[k] > 0)
+          shot[i] += rows_.hot_sum(k, n, body) / static_cast<float>(rows_.rays[k]);
+      }
+      const SideValues<N> source = hot_.without_hot(g.source);
+      if (!g.refined) {
+        g.bounced.resize(problem_.side_count());
+        const Iteration it = solve_rows(problem_, rows_, source, shot, g.bounced, work_);
+        if (it.iterations >= slowest.iterations) slowest = it;
+        smooth(g, row_variances(g));
+      } else {
+        SideValues<N> change(problem_.side_count());
+        const Iteration it = solve_rows(problem_, rows_, minus(source, g.solved_source),
+                                        minus(shot, g.solved_shot), change, work_);
+        if (it.iterations >= slowest.iterations) slowest = it;
+        change = (*g.smoothing)(change);
+        for (const SideIndex i : problem_.sides.active) {
+          g.bounced[i] += change[i];
+          g.seen[i] += change[i];
+        }
+      }
+      g.solved_source = source;
+      g.solved_shot = std::move(shot);
+    }
+    slowest.iterations += result_.iteration.iterations;
+    result_.iteration = slowest;
   }
 
-  SideValues<N> radiosity(const SideValues<N>& indirect) const {
+  void smooth(GroupLight<N>& g, const std::vector<double>& variance) const {
+    g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, variance);
+    g.seen = (*g.smoothing)(g.bounced);
+  }
+
+  /// What samples found is a better field than the rows' for the next samples to read. Those that
+  /// go on are drawn anew against it.
+  void refine_field(const std::vector<Draw>& plan) {
+    const std::vector<double> variance(result_.indirect.variance.begin(),
+                                       result_.indirect.variance.end());
+    for (GroupLight<N>& g : groups_) {
+      for (const SideIndex i : problem_.sides.active)
+        g.bounced[i] = exchange(problem_, g.indirect, i);
+      smooth(g, variance);
+      g.refined = true;
+    }
+    for (const Draw& d : plan) gathered_.drop_sums(d.side);
+  }
+
+  SideValues<N> minus(SideValues<N> a, const SideValues<N>& b) const {
+    for (const SideIndex i : problem_.sides.active) a[i] -= b[i];
+    return a;
+  }
+
+  /// First light of hot patches as far as samples of them found it.
+  [[nodiscard]] Spectrum<N> shot_light(SideIndex i, std::size_t group, bool body) const {
+    return body ? shot_.mean_body(i, group) : shot_.mean(i, group);
+  }
+
+  /// What the rows' entries read.
+  SideValues<N> radiosity(const GroupLight<N>& g) const {
+    const SideValues<N> source = hot_.without_hot(g.source);
     SideValues<N> b(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       b[i] =
-          leaving(problem_.sides, i, source_[i] + indirect[i], source_[i ^ 1U] + indirect[i ^ 1U]);
+          leaving(problem_.sides, i, source[i] + g.seen[i], source[i ^ 1U] + g.seen[i ^ 1U]);
     return b;
   }
 
-  /// Fresh rays against the solution, pooled with the rows' own estimate; what that changes is
-  /// propagated through the rows once more.
-  void improve() {
-    SideValues<N> field(problem_.side_count());
-    for (const SideIndex i : problem_.sides.active) field[i] = source_[i] + indirect_[i];
-    const Gathered<N> fresh = gather(problem_, field, work_, counters_);
-    const SideValues<N> b = radiosity(indirect_);
-    SideValues<N> correction(problem_.side_count());
-    for (std::size_t k = 0; k < rows_.size(); ++k)
-      correction[problem_.sides.active[k]] = pool(k, fresh, b);
-    SideValues<N> change = correction;
+  /// Fresh rays against the smoothed solution, pooled with the rows' own estimate against it; what
+  /// that changes is propagated through the rows once more, as a smooth field again.
+  void assemble() {
+    for (std::size_t g = 0; g < groups_.size(); ++g) improve(g);
+    sum_groups();
+    estimate_variance();
+  }
+
+  void improve(std::size_t group) {
+    GroupLight<N>& g = groups_[group];
+    g.indirect = Irradiance<N>(problem_.side_count(), problem_.sides.any_coupled);
+    const SideValues<N> b = radiosity(g);
+    for (std::size_t k = 0; k < rows_.size(); ++k) pool(k, group, b);
+    SideValues<N> difference(problem_.side_count());
+    for (const SideIndex i : problem_.sides.active)
+      difference[i] = exchange(problem_, g.indirect, i);
+    difference = (*g.smoothing)(difference);
+    for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
     const SideValues<N> none(problem_.side_count());
-    const Iteration more = solve_rows(problem_, rows_, none, correction, change, work_);
+    SideValues<N> change(problem_.side_count());
+    const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
     result_.iteration.iterations += more.iterations;
-    Irradiance<N>& e = result_.indirect.irradiance;
+    change = (*g.smoothing)(change);
     for (const SideIndex i : problem_.sides.active) {
       const bool coupled = problem_.sides.coupled[i / 2] != 0;
-      Spectrum<N>& own = coupled ? e.body[i] : e.plain[i];
+      Spectrum<N>& own = coupled ? g.indirect.body[i] : g.indirect.plain[i];
       // Light cannot be negative; where the correction's noise says so, the pooled value stays.
-      const Spectrum<N> better = indirect_[i] + change[i];
+      const Spectrum<N> better = own + change[i];
       if (better.min() < 0.0f) continue;
       if (coupled)
         for (int lane = 0; lane < N; ++lane)
-          if (own[lane] > 0.0f) e.plain[i][lane] *= better[lane] / own[lane];
+          if (own[lane] > 0.0f) g.indirect.plain[i][lane] *= better[lane] / own[lane];
       own = better;
     }
-    estimate_error();
   }
 
-  /// Stores the pooled estimate of side k and returns how it differs from the rows' solution.
-  Spectrum<N> pool(std::size_t k, const Gathered<N>& fresh, const SideValues<N>& b) {
+  /// Share of the fresh rays in the estimate of row k.
+  [[nodiscard]] float fresh_share(std::size_t k) const {
+    const float fresh = static_cast<float>(gathered_.valid(problem_.sides.active[k]));
+    return fresh > 0.0f ? fresh / (static_cast<float>(rows_.rays[k]) + fresh) : 0.0f;
+  }
+
+  /// The pooled estimate of side k.
+  void pool(std::size_t k, std::size_t group, const SideValues<N>& b) {
     const SideIndex i = problem_.sides.active[k];
-    const bool coupled = problem_.sides.coupled[i / 2] != 0;
-    const float rows = static_cast<float>(rows_.rays[k]);
-    const float more = static_cast<float>(fresh.rays[i]);
-    if (rows + more == 0.0f) return {};
-    const float w = more / (rows + more);
-    const float share = rows > 0.0f ? (1.0f - w) / rows : 0.0f;
-    Irradiance<N>& e = result_.indirect.irradiance;
-    e.plain[i] = share * rows_.apply(k, b, false) + w * fresh.estimate.irradiance.plain[i];
-    if (coupled)
-      e.body[i] = share * rows_.apply(k, b, true) + w * fresh.estimate.irradiance.body[i];
-    result_.indirect.variance[i] =
-        more > 0.0f ? w * fresh.estimate.variance[i] : row_variance(k, b);
-    return exchange(problem_, e, i) - indirect_[i];
+    GroupLight<N>& g = groups_[group];
+    const float fresh = fresh_share(k);
+    const float share =
+        rows_.rays[k] > 0 ? (1.0f - fresh) / static_cast<float>(rows_.rays[k]) : 0.0f;
+    const auto estimate = [&](bool body) {
+      const Spectrum<N> gathered =
+          body ? gathered_.mean_body(i, group) : gathered_.mean(i, group);
+      return share * (rows_.apply(k, b, body) + rows_.hot_sum(k, group, body)) +
+             fresh * gathered + shot_light(i, group, body);
+    };
+    g.indirect.plain[i] = estimate(false);
+    if (problem_.sides.coupled[i / 2] != 0) g.indirect.body[i] = estimate(true);
+  }
+
+  void sum_groups() {
+    const auto sum = [&](Irradiance<N> GroupLight<N>::*part, Estimate<N>& into) {
+      into.irradiance = groups_[0].*part;
+      for (std::size_t g = 1; g < groups_.size(); ++g)
+        for (const SideIndex i : problem_.sides.active) {
+          into.irradiance.plain[i] += (groups_[g].*part).plain[i];
+          if (problem_.sides.any_coupled)
+            into.irradiance.body[i] += (groups_[g].*part).body[i];
+        }
+    };
+    sum(&GroupLight<N>::direct, result_.direct);
+    sum(&GroupLight<N>::caustic, result_.caustic);
+    sum(&GroupLight<N>::indirect, result_.indirect);
+  }
+
+  void estimate_variance() {
+    const std::vector<double> direct =
+        sample_variance(problem_, neighbours_, direct_, Samples::All);
+    const std::vector<double> fresh =
+        sample_variance(problem_, neighbours_, gathered_, Samples::All);
+    const std::vector<double> shot = sample_variance(problem_, neighbours_, shot_, Samples::All);
+    std::vector<double> total(problem_.side_count(), 0.0);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const SideIndex i = problem_.sides.active[k];
+      const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
+      const double n = direct_.valid(i);
+      result_.direct.variance[i] =
+          static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
+      result_.caustic.variance[i] = exposed * exposed * caustic_variance(i);
+      const double shots = shot_.valid(i);
+      result_.indirect.variance[i] =
+          static_cast<float>(indirect_variance(k, fresh[i]) +
+                             (shots > 0.0 ? shot[i] / shots : 0.0));
+      total[i] = static_cast<double>(result_.direct.variance[i]) +
+                 static_cast<double>(result_.caustic.variance[i]) +
+                 static_cast<double>(result_.indirect.variance[i]);
+    }
+    const double common = hot_flux_variance();
+    if (common > 0.0)
+      for (const SideIndex i : problem_.sides.active) {
+        double first = 0.0;
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+          first += static_cast<double>(shot_.mean(i, g).mean());
+        result_.indirect.variance[i] += static_cast<float>(common * first * first);
+      }
+    // The errors of what a side sees reach it too, as far as they do not average out.
+    std::vector<double> leaving_variance(problem_.side_count(), 0.0);
+    for (const SideIndex i : problem_.sides.active) {
+      const double rho = static_cast<double>(problem_.sides.reflectance[i].mean());
+      const double tau = static_cast<double>(problem_.sides.transmittance[i].mean());
+      leaving_variance[i] = rho * rho * total[i] + tau * tau * total[i ^ 1U];
+    }
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      result_.indirect.variance[problem_.sides.active[k]] +=
+          static_cast<float>(rows_.apply_squared(k, leaving_variance));
+    SideValues<N> irradiance(problem_.side_count());
+    for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
+    weights_ = error_weights(problem_, irradiance);
+    result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
+                                       weighted(result_.caustic.variance) +
+                                       weighted(result_.indirect.variance));
+  }
+
+  [[nodiscard]] float caustic_variance(SideIndex i) const {
+    float sum = 0.0f;
+    for (const Estimate<N>& e : photons_.caustic) sum += e.variance[i];
+    return sum;
+  }
+
+  /// \param fresh  variance of one fresh ray.
+  [[nodiscard]] double indirect_variance(std::size_t k, double fresh) const {
+    const double share = static_cast<double>(fresh_share(k));
+    const double n = gathered_.valid(problem_.sides.active[k]);
+    if (n > 0.0) return share * fresh / n;
+    double sum = 0.0;
+    for (const GroupLight<N>& g : groups_) sum += row_variance(k, g);
+    return sum;
+  }
+
+  [[nodiscard]] std::vector<double> row_variances(const GroupLight<N>& g) const {
+    std::vector<double> variance(problem_.side_count(), 0.0);
+    scene::parallel_for(rows_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        variance[problem_.sides.active[k]] = row_variance(k, g);
+    });
+    return variance;
   }
 
   /// Rays taken as independent: an upper bound for stratified ones.
-  float row_variance(std::size_t k, const SideValues<N>& b) const {
+  [[nodiscard]] double row_variance(std::size_t k, const GroupLight<N>& g) const {
     const double n = rows_.rays[k];
-    if (n < 2.0) return 0.0f;
+    if (n < 2.0) return 0.0;
     double sum = 0.0;
     double squares = 0.0;
     for (std::uint64_t e = rows_.first[k]; e < rows_.first[k + 1]; ++e) {
       const auto& entry = rows_.entries[e];
-      const double value = static_cast<double>(b[entry.target & ~Rows<N>::kChromatic].mean());
+      const SideIndex j = entry.target & ~Rows<N>::kChromatic;
+      const double value = static_cast<double>(leaving(problem_.sides, j, g.source[j] + g.bounced[j],
+                                                       g.source[j ^ 1U] + g.bounced[j ^ 1U])
+                                                   .mean());
       sum += static_cast<double>(entry.weight) * value;
       squares += static_cast<double>(entry.weight) * value * value;
     }
-    return static_cast<float>(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1.0));
+    return std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1.0);
   }
 
-  /// Area-weighted RMS of the standard error of indirect irradiance over that of the irradiance.
-  void estimate_error() {
-    double errors = 0.0;
-    double values = 0.0;
-    for (const SideIndex i : problem_.sides.active) {
-      const double area = static_cast<double>(problem_.area(i));
-      const double value = static_cast<double>(result_.indirect.irradiance.plain[i].mean());
-      errors += area * static_cast<double>(result_.indirect.variance[i]);
-      values += area * value * value;
+  [[nodiscard]] double weighted(const std::vector<float>& variance) const {
+    double sum = 0.0;
+    for (const SideIndex i : problem_.sides.active)
+      sum += weights_[i] * static_cast<double>(variance[i]);
+    return sum;
+  }
+
+  /// Rounds of samples where they count most, until the estimate is below what was asked for.
+  void reach_error() {
+    constexpr int kMaxRounds = 12;
+    constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
+    const double target = problem_.options.error;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      if (result_.error_estimate <= target || work_.stopped()) return;
+      const double fixed = weighted(result_.caustic.variance);
+      if (fixed > 0.5 * target * target && !more_photons()) return;
+      const double rest = std::sqrt(std::max(0.25 * target * target, target * target - fixed));
+      const std::vector<Stratum<N>> strata{
+          {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
+           kShadowRayCost},
+          {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours),
+           1.0},
+          {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
+           kShadowRayCost}};
+      auto plans = plan_samples(problem_, weights_, strata, rest);
+      if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
+      for (Draw& d : plans[1]) d.more += gathered_.valid(d.side) / kReplicates;
+      refine_field(plans[1]);
+      work_.begin("direct light", 0.98);
+      draw_direct(plans[0]);
+      take_direct();
+      draw_hot(plans[2]);
+      solve_bounces();
+      work_.begin("gathering", 0.98);
+      draw_gather(plans[1]);
+      assemble();
     }
-    result_.error_estimate = values > 0.0 ? std::sqrt(errors / values) : 0.0;
+  }
+
+  /// Twice as many photons, all of them new. False at the end of their numbers.
+  bool more_photons() {
+    const std::uint64_t next = photons_.count * 2;
+    if (next > 0xffffffffU) return false;
+    work_.begin("caustics", 0.98);
+    photons_ = trace_photons(problem_, next, work_, counters_);
+    return !work_.stopped();
   }
 
   const Problem<N>& problem_;
   Work& work_;
   Counters& counters_;
   Solution<N> result_;
+  Neighbours neighbours_;
+  std::vector<GroupLight<N>> groups_;
+  Tally<N> direct_;    ///< lights
+  Tally<N> shot_;      ///< first light of hot patches
+  Tally<N> gathered_;  ///< everything else that diffuse surfaces reflect
+  Photons<N> photons_;
   Rows<N> rows_;
-  SideValues<N> source_;    ///< exchange irradiance from lights
-  SideValues<N> indirect_;  ///< exchange irradiance of the rows' solution
-  std::vector<float> buried_;
+  HotPatches<N> hot_;
+  std::vector<float> exposed_;   ///< by side: share of its area outside closed bodies
+  std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
+  std::vector<double> weights_;  ///< of squared errors, by side
 };
 
 }  // namespace
 
 template <int N>
-Solution<N> solve_with_rows(const Problem<N>& problem, Work& work, Counters& counters) {
-  return RowSolver<N>(problem, work, counters).solve();
+Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
+                            Counters& counters) {
+  return RowSolver<N>(problem, std::move(direct), work, counters).solve();
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Solution<N> solve_with_rows(const Problem<N>&, Work&, Counters&);
+  template Solution<N> solve_with_rows(const Problem<N>&, Tally<N>, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "iterate.h"
 #include "passes.h"
 
 namespace atrium::radiosity {
@@ -20,8 +21,9 @@ struct Solution {
         valid(problem.sides.is_active) {}
 };
 
+/// \param direct  light samples of the problem's sides that were drawn already.
 template <int N>
-[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Work& work,
+[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
                                           scene::Counters& counters);
 /// \throws Error  if the scene has specular surfaces or more sides than a dense matrix can hold.
 template <int N>

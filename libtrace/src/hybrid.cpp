@@ -31,6 +31,13 @@ Spectrum<N> stored(const SurfaceField& field, const SurfaceField::Quantities& q,
   return e;
 }
 
+/// Edge of the element at a point [m]; 0 where there is none.
+float element_size(const SurfaceField& field, const scene::Scene& scene,
+                   const scene::SurfacePoint& p) {
+  const std::uint32_t e = field.element_at(scene, p.object, p.triangle, p.position);
+  return e == SurfaceField::kNone ? 0.0f : field.element_size(e);
+}
+
 /// Radiance towards the viewer that the field gives at a point, by reflection and by transmission
 /// of what arrives on the other side.
 template <int N>
@@ -161,7 +168,7 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
     }
     // Closer than an element, its mean direct light is too coarse: look at the lights again.
     const bool close = depth == 0 && surface.bsdf.has(kDiffuseEvents) &&
-                       distance < view.field.cell_size(shading.scene(), hit->object, hit->triangle);
+                       distance < element_size(view.field, shading.scene(), *hit);
     const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
     g.indirect += beta * (r.reflected + r.transmitted);
     if (close) {

@@ -30,7 +30,7 @@ struct Solved {
     float weight = 0.0f;
     for (std::size_t p = result.elements.first_piece[e]; p < result.elements.first_piece[e + 1];
          ++p) {
-      const auto& c = result.elements.pieces[p].corners;
+      const auto c = result.elements.pieces[p].corners;
       for (std::size_t k = 1; k + 1 < c.size(); ++k) {
         const float area = (c[k] - c[0]).cross(c[k + 1] - c[0]).norm();
         sum += area / 3.0f * (c[0] + c[k] + c[k + 1]);

@@ -23,11 +23,17 @@ struct SolveOptions {
   Solver solver = Solver::Rows;
   double element_size = 0.0;           ///< [m] edge of an element; 0: from max_elements
   std::uint32_t max_elements = 60000;  ///< about; large scenes get larger elements
+  int max_level = 3;        ///< how often an element may be halved where light changes; 0: never
+  double mesh_error = 0.0;  ///< RMS that interpolation of direct light may miss, as a share of the
+                            ///< irradiance, before elements are divided; 0: 0.7 error, or 3 %
   int row_rays = 64;                   ///< hemisphere rays per element side kept as a row
   int gather_rays = 128;    ///< further rays per element side, streamed against the solution
   int direct_samples = 16;  ///< light samples per element side
   std::uint64_t caustic_photons =
       1000000;  ///< only traced where the scene has mirrors, solids, lobes
+  /// Asked for RMS of the relative standard error of total irradiance over the area, with a floor
+  /// of 1 % of the mean irradiance; 0: the fixed numbers of samples above.
+  double error = 0.0;
   int max_iterations = 200;
   double tolerance = 1e-4;  ///< of the iteration, relative to the largest radiosity
   double time_limit = 0.0;  ///< [s]; 0: none
@@ -50,7 +56,8 @@ struct SolveResult {
   FluxBalance flux;
   double residual = 0.0;  ///< last change of radiosity, relative to its maximum
   int iterations = 0;
-  double error_estimate = 0.0;  ///< area-weighted relative standard error of indirect irradiance
+  double error_estimate = 0.0;  ///< RMS of the relative standard error of irradiance over the area
+  double mesh_error = 0.0;      ///< RMS of what interpolation of direct light misses, estimated
   bool complete = true;    ///< false: stopped by time or request; the field is usable all the same
   std::string stopped_by;  ///< "tolerance", "iterations", "time limit", "interrupt"
 };

@@ -356,6 +356,8 @@ void move_to_origin(Scene& scene) {
   const Eigen::Affine3d shift(Eigen::Translation3d(-scene.origin));
   for (Light& light : scene.lights) light.to_scene = shift * light.to_scene;
   for (Camera& camera : scene.cameras) camera.to_scene = shift * camera.to_scene;
+  for (std::vector<Vec3d>& polygon : scene.portals.polygons)
+    for (Vec3d& corner : polygon) corner -= scene.origin;
 }
 
 }  // namespace
@@ -388,6 +390,7 @@ Scene build_scene(Model model, const BuildOptions& options) {
   scene.lights = std::move(model.lights);
   scene.cameras = std::move(model.cameras);
   scene.environment = std::move(model.environment);
+  scene.portals = std::move(model.portals);
   scene.unit = model.unit;
   Builder builder(scene);
   for (Job& job : jobs) builder.add(job, nodes);

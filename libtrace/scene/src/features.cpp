@@ -70,8 +70,8 @@ Features find_features(const Scene& scene) {
   for (const Light& light : scene.lights) count_light(f, light);
   if (scene.environment && material::max_value(scene.environment->radiance) > 0.0) {
     f.environment = true;
-    f.chromatic |=
-        scene.environment->image.valid() || !material::is_achromatic(scene.environment->radiance);
+    f.chromatic |= std::holds_alternative<Image>(scene.environment->pattern) ||
+                   !material::is_achromatic(scene.environment->radiance);
   }
   return f;
 }

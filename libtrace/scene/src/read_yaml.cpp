@@ -42,7 +42,8 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
   YamlScene scene{model, options, file.string(), RadianceUnit::Nit, {}, {}, {}, {}, {}, {}};
   const YamlMap top = YamlView(tree, scene.file)
                           .map("scene", {"atrium", "description", "unit", "spectra", "materials",
-                                         "groups", "objects", "lights", "cameras", "environment"});
+                                         "groups", "objects", "lights", "cameras", "environment",
+                                         "sky", "sun", "north", "portals"});
   if (top.get("atrium").number() != 1.0) top.get("atrium").fail("this version reads atrium: 1");
   read_unit(scene, top);
   const std::size_t first_node = model.nodes.size();
@@ -60,6 +61,8 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
     if (model.environment) view->fail("a file before this one has an environment already");
     model.environment = read_environment(scene, *view);
   }
+  read_daylight(scene, top);
+  if (const auto view = top.find("portals")) read_portals(scene, *view);
   resolve_powers(scene, first_node);
 }
 

@@ -98,6 +98,25 @@ struct AddLight {
   }
 };
 
+struct AddSky {
+  Hash64& h;
+  void operator()(const UniformSky&) const {}
+  void operator()(const Image& image) const {
+    h.value(image.width);
+    h.value(image.height);
+    h.array(image.pixels);
+  }
+  void operator()(const SkyDome& dome) const {
+    h.word(dome.pattern().index());
+    if (const auto* sky = std::get_if<GradationSky>(&dome.pattern())) {
+      for (const double v : {sky->a, sky->b, sky->c, sky->d, sky->e}) h.value(v);
+      h.value(sky->shifted);
+    }
+    add_vector(h, dome.sun());
+    h.value(dome.ground());
+  }
+};
+
 void add(Hash64& h, const Mesh& mesh) {
   h.array(mesh.positions);
   h.array(mesh.normals);
@@ -127,7 +146,8 @@ std::uint64_t hash_scene(const Scene& scene) {
   }
   if (scene.environment) {
     add(h, scene.environment->radiance);
-    h.value(scene.environment->image.value);
+    h.word(scene.environment->pattern.index());
+    std::visit(AddSky{h}, scene.environment->pattern);
     add_vector(h, scene.environment->to_scene.matrix());
   }
   h.value(scene.unit);

@@ -4,7 +4,7 @@ namespace atrium::scene {
 
 template <int N>
 Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis, Weights weights)
-    : query_(&query), basis_(basis), lights_(query.scene(), basis) {
+    : query_(&query), basis_(basis), lights_(query.scene(), basis, find_portals(query)) {
   if (weights == Weights::Paper) {
     sources_.reserve(scene().materials.size());
     for (const material::Material& m : scene().materials)

@@ -1,35 +1,38 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "material/frame.h"
-#include "scene/scene.h"
 
 namespace atrium::scene {
 
-/// Directions towards a latitude-longitude image, by luminance times solid angle.
-/// Image direction: u = 0.5 + atan2(x, -z) / (2 pi), v = acos(y) / pi in the environment's frame.
+/// Place of a direction in a latitude-longitude image: u = 0.5 + atan2(x, -z) / (2 pi), v =
+/// acos(y) / pi, both in [0, 1].
+[[nodiscard]] Vec2f latlong_uv(const Vec3f& w);
+
+/// Directions by a table of radiance over latitude and longitude; uniform in solid angle within a
+/// cell, so that the density is that of the table exactly. A small share goes everywhere: no
+/// direction has the density 0.
 class SkySampler {
  public:
   SkySampler() = default;
-  explicit SkySampler(const material::Texture& image);
+  /// \param radiance  height x width cell means, rows from v = 0, >= 0; all 0: uniform.
+  SkySampler(int width, int height, const std::vector<double>& radiance);
 
   struct Direction {
     Vec3f w;
-    float pdf;  // [1/sr]
+    float pdf;  ///< [1/sr]
   };
   [[nodiscard]] Direction sample(const Vec2f& u) const;
   [[nodiscard]] float pdf(const Vec3f& w) const;
-  [[nodiscard]] static Vec2f uv_of(const Vec3f& w);
   [[nodiscard]] bool empty() const { return rows_.empty(); }
 
  private:
   int width_ = 0, height_ = 0;
-  std::vector<float> rows_;     // cumulative over rows, height + 1
-  std::vector<float> columns_;  // cumulative within each row, height x (width + 1)
-  // Density [1/sr] within a texel where the sine of the polar angle is sin_theta.
-  [[nodiscard]] float pdf_of_row(int x, int y, float sin_theta) const;
+  std::vector<float> rows_;         // cumulative over rows, height + 1
+  std::vector<float> columns_;      // cumulative within each row, height x (width + 1)
+  std::vector<float> solid_angle_;  // of a cell, by row
+  [[nodiscard]] float pdf_of_cell(int x, int y) const;
 };
 
 }  // namespace atrium::scene

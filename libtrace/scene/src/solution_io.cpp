@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "solution files are little endian");
 
 constexpr char kMagic[8] = {'A', 'T', 'R', 'I', 'U', 'M', 'S', 'F'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 /// Appends values; vectors with their length.
 class Writer {
@@ -90,27 +90,30 @@ void facet(Archive& a, Facet& f) {
   a(f.nx);
   a(f.ny);
   a(f.first_cell);
+  a(f.clump);
 }
 void facets(Writer& a, const std::vector<SurfaceField::Facet>& v) {
   a(static_cast<std::uint64_t>(v.size()));
   for (const SurfaceField::Facet& f : v) facet(a, f);
 }
 void facets(Reader& a, std::vector<SurfaceField::Facet>& v) {
-  v.resize(a.count(12 * sizeof(float)));
+  v.resize(a.count(12 * sizeof(float) + 1));
   for (SurfaceField::Facet& f : v) facet(a, f);
 }
 
 /// One list of members for both directions. The binding stops compiling when a member is added.
 template <class Archive, class Field>
 void field(Archive& a, Field& f) {
-  auto& [lanes, list, cell_element, triangle_facet, element_facet, element_cell, element_area,
-         irradiance, body_irradiance, standard_error, valid, unit] = f;
+  auto& [lanes, list, nodes, triangle_facet, element_facet, element_level, element_x, element_y,
+         element_area, irradiance, body_irradiance, standard_error, valid, unit] = f;
   a(lanes);
   facets(a, list);
-  a(cell_element);
+  a(nodes);
   a(triangle_facet);
   a(element_facet);
-  a(element_cell);
+  a(element_level);
+  a(element_x);
+  a(element_y);
   a(element_area);
   for (auto* q : {&irradiance, &body_irradiance}) {
     a(q->direct);
@@ -127,6 +130,52 @@ bool all_below(const std::vector<std::uint32_t>& v, std::size_t limit) {
                      [&](std::uint32_t i) { return i < limit || i == SurfaceField::kNone; });
 }
 
+/// The grids lie in the array, and behind them every block of children has one parent, in front of
+/// it, so walks down end.
+bool nodes_consistent(const SurfaceField& f) {
+  std::uint64_t blocks_begin = 0;
+  for (const SurfaceField::Facet& facet : f.facets) {
+    if (facet.nx == 0 || facet.ny == 0 || facet.nx > 1U << 16 || facet.ny > 1U << 16) return false;
+    blocks_begin = std::max(blocks_begin, facet.first_cell + std::uint64_t{facet.nx} * facet.ny);
+  }
+  if (blocks_begin > f.nodes.size() || (f.nodes.size() - blocks_begin) % 4 != 0) return false;
+  std::vector<int> level((f.nodes.size() - blocks_begin) / 4,
+                         -1);  // of the blocks; -1: no parent yet
+  for (std::size_t i = 0; i < f.nodes.size(); ++i) {
+    const std::uint32_t node = f.nodes[i];
+    if (!SurfaceField::is_inner(node)) {
+      if (node != SurfaceField::kNone && node >= f.element_count()) return false;
+      continue;
+    }
+    const std::uint64_t first = node & ~SurfaceField::kInner;
+    if (first <= i || first < blocks_begin || first >= f.nodes.size()) return false;
+    if ((first - blocks_begin) % 4 != 0) return false;
+    const int own = i < blocks_begin ? 0 : level[(i - blocks_begin) / 4];
+    int& below = level[(first - blocks_begin) / 4];
+    if (own < 0 || below >= 0 || own >= SurfaceField::kMaxLevel) return false;
+    below = own + 1;
+  }
+  return true;
+}
+
+/// Every element is the leaf at its own place.
+bool elements_consistent(const SurfaceField& f) {
+  const std::size_t n = f.element_count();
+  if (f.element_level.size() != n || f.element_x.size() != n || f.element_y.size() != n ||
+      f.element_area.size() != n)
+    return false;
+  for (std::uint32_t e = 0; e < n; ++e) {
+    const int level = f.element_level[e];
+    if (f.element_facet[e] >= f.facets.size() || level > SurfaceField::kMaxLevel ||
+        !(f.element_area[e] > 0.0f))
+      return false;
+    const SurfaceField::Cell cell =
+        f.cell(f.facets[f.element_facet[e]], level, f.element_x[e], f.element_y[e]);
+    if (cell.node != e || cell.level != level) return false;
+  }
+  return true;
+}
+
 /// Look-ups index without checks, so every index is checked here.
 bool consistent(const SurfaceField& f) {
   const std::size_t n = f.element_count();
@@ -134,13 +183,8 @@ bool consistent(const SurfaceField& f) {
     return v.empty() || v.size() == size;
   };
   bool ok = (f.lanes == 1 || f.lanes == 3 || f.lanes == 4 || f.lanes == 8) &&
-            f.element_cell.size() == n && f.element_area.size() == n &&
-            all_below(f.cell_element, n) && all_below(f.triangle_facet, f.facets.size()) &&
-            all_below(f.element_facet, f.facets.size());
-  for (const SurfaceField::Facet& facet : f.facets) {
-    const std::uint64_t cells = std::uint64_t{facet.nx} * facet.ny;
-    ok = ok && facet.first_cell + cells <= f.cell_element.size();
-  }
+            all_below(f.triangle_facet, f.facets.size()) && nodes_consistent(f) &&
+            elements_consistent(f);
   const std::size_t values = n * 2 * static_cast<std::size_t>(std::max(f.lanes, 0));
   for (const SurfaceField::Quantities* q : {&f.irradiance, &f.body_irradiance}) {
     ok = ok && sized(q->direct, values) && sized(q->caustic, values) && sized(q->indirect, values);

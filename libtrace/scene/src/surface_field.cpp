@@ -1,14 +1,17 @@
 #include "scene/surface_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace atrium::scene {
 namespace {
 
+constexpr std::uint32_t kNone = SurfaceField::kNone;
+
 struct GridPlace {
   const SurfaceField::Facet* facet = nullptr;
-  float x = 0.0f, y = 0.0f;  // in cells
+  float x = 0.0f, y = 0.0f;  // in cells of level 0
 };
 
 GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
@@ -16,47 +19,185 @@ GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
   const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
   if (index >= field.triangle_facet.size()) return {};
   const std::uint32_t f = field.triangle_facet[index];
-  if (f == SurfaceField::kNone) return {};
+  if (f == kNone) return {};
   const SurfaceField::Facet& facet = field.facets[f];
   const Vec3f d = position - facet.origin;
   return {&facet, d.dot(facet.axis_u), d.dot(facet.axis_v)};
 }
 
-int cell_coordinate(float x, std::uint32_t n) {
-  return static_cast<int>(std::clamp(std::floor(x), 0.0f, static_cast<float>(n) - 1.0f));
+std::uint32_t cell_coordinate(float x, std::uint32_t n) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(x), 0.0f, static_cast<float>(n) - 1.0f));
 }
 
-std::uint32_t cell(const SurfaceField& field, const SurfaceField::Facet& facet, int ix, int iy) {
-  if (ix < 0 || iy < 0 || ix >= static_cast<int>(facet.nx) || iy >= static_cast<int>(facet.ny))
-    return SurfaceField::kNone;
-  return field.cell_element[facet.first_cell + static_cast<std::uint32_t>(iy) * facet.nx +
-                            static_cast<std::uint32_t>(ix)];
+/// The leaf that a place lies in: an element or kNone.
+std::uint32_t leaf_at(const SurfaceField& field, const GridPlace& p) {
+  const std::uint32_t cx = cell_coordinate(p.x, p.facet->nx);
+  const std::uint32_t cy = cell_coordinate(p.y, p.facet->ny);
+  std::uint32_t node = field.nodes[p.facet->first_cell + cy * p.facet->nx + cx];
+  if (!SurfaceField::is_inner(node)) return node;
+  float x = std::clamp(p.x - static_cast<float>(cx), 0.0f, 1.0f);
+  float y = std::clamp(p.y - static_cast<float>(cy), 0.0f, 1.0f);
+  do {
+    const bool right = x >= 0.5f;
+    const bool upper = y >= 0.5f;
+    x = 2.0f * x - (right ? 1.0f : 0.0f);
+    y = 2.0f * y - (upper ? 1.0f : 0.0f);
+    node = field.child(node, right ? 1U : 0U, upper ? 1U : 0U);
+  } while (SurfaceField::is_inner(node));
+  return node;
 }
 
-// The occupied cell nearest to a place: rounding can put a point into an empty neighbour.
-std::uint32_t nearest_element(const SurfaceField& field, const GridPlace& p) {
-  const int cx = cell_coordinate(p.x, p.facet->nx);
-  const int cy = cell_coordinate(p.y, p.facet->ny);
-  const std::uint32_t here = cell(field, *p.facet, cx, cy);
-  if (here != SurfaceField::kNone) return here;
-  std::uint32_t best = SurfaceField::kNone;
-  float best_distance = 1e30f;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const std::uint32_t e = cell(field, *p.facet, cx + dx, cy + dy);
-      if (e == SurfaceField::kNone) continue;
-      const float ex = static_cast<float>(cx + dx) + 0.5f - p.x;
-      const float ey = static_cast<float>(cy + dy) + 0.5f - p.y;
-      const float d = ex * ex + ey * ey;
-      if (d < best_distance) {
-        best_distance = d;
-        best = e;
-      }
+/// Searches leaves near a place in the 3 x 3 cells round it.
+class NearestLeaf {
+ public:
+  NearestLeaf(const SurfaceField& field, const GridPlace& p) : field_(field), p_(p) {}
+
+  std::uint32_t find() {
+    const auto cx = static_cast<std::int64_t>(cell_coordinate(p_.x, p_.facet->nx));
+    const auto cy = static_cast<std::int64_t>(cell_coordinate(p_.y, p_.facet->ny));
+    for (std::int64_t y = cy - 1; y <= cy + 1; ++y)
+      for (std::int64_t x = cx - 1; x <= cx + 1; ++x)
+        visit(field_.cell(*p_.facet, 0, x, y).node, static_cast<float>(x), static_cast<float>(y),
+              1.0f);
+    return best_;
+  }
+
+ private:
+  /// Distance to the leaf, then to its centre.
+  void visit(std::uint32_t node, float x, float y, float edge) {
+    if (node == kNone) return;
+    const auto outside = [edge](float t) { return std::max({-t, t - edge, 0.0f}); };
+    const auto square = [](float a, float b) { return a * a + b * b; };
+    const float to_cell = square(outside(p_.x - x), outside(p_.y - y));
+    if (to_cell > to_cell_) return;
+    const float half = 0.5f * edge;
+    if (SurfaceField::is_inner(node)) {
+      for (const std::uint32_t k : {0U, 1U, 2U, 3U})
+        visit(field_.child(node, k & 1U, k >> 1U), x + half * static_cast<float>(k & 1U),
+              y + half * static_cast<float>(k >> 1U), half);
+      return;
     }
-  return best;
+    const float to_centre = square(p_.x - x - half, p_.y - y - half);
+    if (to_cell == to_cell_ && to_centre >= to_centre_) return;
+    best_ = node;
+    to_cell_ = to_cell;
+    to_centre_ = to_centre;
+  }
+
+  const SurfaceField& field_;
+  GridPlace p_;
+  std::uint32_t best_ = kNone;
+  float to_cell_ = 1e30f, to_centre_ = 1e30f;
+};
+
+// The occupied leaf nearest to a place: rounding can put a point into an empty neighbour.
+std::uint32_t nearest_element(const SurfaceField& field, const GridPlace& p) {
+  const std::uint32_t here = leaf_at(field, p);
+  return here != kNone ? here : NearestLeaf(field, p).find();
 }
+
+class StencilMaker {
+ public:
+  StencilMaker(const SurfaceField& field, const SurfaceField::Facet& facet, Side side,
+               SurfaceField::Stencil& result)
+      : field_(field), facet_(facet), side_(static_cast<std::size_t>(side)), result_(result) {}
+
+  /// Bilinear between the cells of a level whose centres surround (x, y), in cells of that level.
+  /// \returns false if none of them has a valid element.
+  bool add_block(int level, float x, float y, float weight) {
+    const float fx = std::floor(x - 0.5f);
+    const float fy = std::floor(y - 0.5f);
+    const float wx = x - 0.5f - fx;
+    const float wy = y - 0.5f - fy;
+    const auto ix = static_cast<std::int64_t>(fx);
+    const auto iy = static_cast<std::int64_t>(fy);
+    std::array<SurfaceField::Cell, 4> cells;
+    std::array<float, 4> w{};
+    float sum = 0.0f;
+    for (unsigned k = 0; k < 4; ++k) {
+      w[k] = ((k & 1U) != 0 ? wx : 1.0f - wx) * ((k & 2U) != 0 ? wy : 1.0f - wy);
+      if (!(w[k] > 0.0f)) continue;
+      cells[k] = field_.cell(facet_, level, ix + (k & 1U), iy + (k >> 1U));
+      if (!(valid_area(cells[k].node) > 0.0f)) w[k] = 0.0f;
+      sum += w[k];
+    }
+    if (!(sum > 0.0f)) return false;
+    for (unsigned k = 0; k < 4; ++k)
+      if (w[k] > 0.0f)
+        add_cell(cells[k], level, ix + (k & 1U), iy + (k >> 1U), weight * w[k] / sum);
+    return true;
+  }
+
+  void add(std::uint32_t element, float weight) {
+    int i = 0;
+    while (i < result_.count && result_.element[i] != element) ++i;
+    if (i == SurfaceField::Stencil::kCapacity) return;
+    if (i == result_.count) {
+      result_.element[result_.count++] = element;
+      result_.weight[i] = 0.0f;
+    }
+    result_.weight[i] += weight;
+  }
+
+  [[nodiscard]] bool usable(std::uint32_t element) const {
+    return element != kNone && field_.valid[std::size_t{element} * 2 + side_] != 0;
+  }
+
+ private:
+  /// Area of the valid elements below a node, 0 if there are none.
+  [[nodiscard]] float valid_area(std::uint32_t node) const {
+    if (!SurfaceField::is_inner(node)) return usable(node) ? field_.element_area[node] : 0.0f;
+    float area = 0.0f;
+    for (const std::uint32_t k : {0U, 1U, 2U, 3U})
+      area += valid_area(field_.child(node, k, k >> 1U));
+    return area;
+  }
+
+  void add_cell(const SurfaceField::Cell& cell, int level, std::int64_t x, std::int64_t y,
+                float weight) {
+    if (cell.level == level) {
+      if (SurfaceField::is_inner(cell.node))
+        add_mean(cell.node, weight / valid_area(cell.node));
+      else
+        add(cell.node, weight);
+      return;
+    }
+    const float scale = std::ldexp(1.0f, cell.level - level);
+    add_block(cell.level, (static_cast<float>(x) + 0.5f) * scale,
+              (static_cast<float>(y) + 0.5f) * scale, weight);
+  }
+
+  void add_mean(std::uint32_t node, float weight_per_area) {
+    if (!SurfaceField::is_inner(node)) {
+      if (usable(node)) add(node, weight_per_area * field_.element_area[node]);
+      return;
+    }
+    for (const std::uint32_t k : {0U, 1U, 2U, 3U})
+      add_mean(field_.child(node, k, k >> 1U), weight_per_area);
+  }
+
+  const SurfaceField& field_;
+  const SurfaceField::Facet& facet_;
+  std::size_t side_;
+  SurfaceField::Stencil& result_;
+};
 
 }  // namespace
+
+SurfaceField::Cell SurfaceField::cell(const Facet& facet, int level, std::int64_t x,
+                                      std::int64_t y) const {
+  const std::int64_t cx = x >> level;
+  const std::int64_t cy = y >> level;
+  if (cx < 0 || cy < 0 || cx >= facet.nx || cy >= facet.ny) return {};
+  Cell c{nodes[facet.first_cell + static_cast<std::size_t>(cy * facet.nx + cx)], 0};
+  while (is_inner(c.node) && c.level < level) {
+    ++c.level;
+    const int shift = level - c.level;
+    c.node = child(c.node, static_cast<std::uint32_t>(x >> shift),
+                   static_cast<std::uint32_t>(y >> shift));
+  }
+  return c;
+}
 
 std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                        const Vec3f& position) const {
@@ -64,10 +205,11 @@ std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std:
   return p.facet != nullptr ? nearest_element(*this, p) : kNone;
 }
 
-float SurfaceField::cell_size(const Scene& scene, ObjectId object, std::uint32_t triangle) const {
-  const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
-  if (index >= triangle_facet.size() || triangle_facet[index] == kNone) return 0.0f;
-  return 1.0f / facets[triangle_facet[index]].axis_u.norm();
+float SurfaceField::element_size(std::uint32_t element) const {
+  const Facet& f = facets[element_facet[element]];
+  const float cell_size =
+      1.0f / std::sqrt(std::min(f.axis_u.squaredNorm(), f.axis_v.squaredNorm()));
+  return std::ldexp(cell_size, -element_level[element]);
 }
 
 SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
@@ -76,38 +218,18 @@ SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
   Stencil s;
   const GridPlace p = place(*this, scene, object, triangle, position);
   if (p.facet == nullptr) return s;
-  const auto usable = [&](std::uint32_t e) {
-    return e != kNone &&
-           valid[static_cast<std::size_t>(e) * 2 + static_cast<std::size_t>(side)] != 0;
-  };
-  const float x = p.x - 0.5f;
-  const float y = p.y - 0.5f;
-  const float fx = std::floor(x);
-  const float fy = std::floor(y);
-  const float wx = x - fx;
-  const float wy = y - fy;
-  float sum = 0.0f;
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      const std::uint32_t e =
-          cell(*this, *p.facet, static_cast<int>(fx) + i, static_cast<int>(fy) + j);
-      if (!usable(e)) continue;
-      const float w = (i != 0 ? wx : 1.0f - wx) * (j != 0 ? wy : 1.0f - wy);
-      if (!(w > 0.0f)) continue;
-      s.element[s.count] = e;
-      s.weight[s.count++] = w;
-      sum += w;
-    }
-  if (sum > 0.0f) {
-    for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
+  const std::uint32_t here = nearest_element(*this, p);
+  if (here == kNone) return s;
+  StencilMaker maker(*this, *p.facet, side, s);
+  const int level = element_level[here];
+  const float scale = std::ldexp(1.0f, level);
+  if (!maker.add_block(level, p.x * scale, p.y * scale, 1.0f)) {
+    if (maker.usable(here)) maker.add(here, 1.0f);
     return s;
   }
-  s.count = 0;
-  if (const std::uint32_t e = nearest_element(*this, p); usable(e)) {
-    s.element[0] = e;
-    s.weight[0] = 1.0f;
-    s.count = 1;
-  }
+  float sum = 0.0f;
+  for (int i = 0; i < s.count; ++i) sum += s.weight[i];
+  for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
   return s;
 }
 

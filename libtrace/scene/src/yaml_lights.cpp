@@ -2,6 +2,8 @@
 #include <numbers>
 
 #include "material/cie.h"
+#include "material/error.h"
+#include "scene/image_io.h"
 #include "yaml_scene.h"
 
 namespace atrium::scene {
@@ -210,12 +212,33 @@ Camera read_camera(const YamlView& view) {
   return camera;
 }
 
+// A latitude-longitude image as an Environment needs it.
+Image read_sky_image(const YamlView& view) {
+  const std::filesystem::path file = view.file();
+  Image image = read_image(file);
+  if (image.channel_index("R") < 0 && image.channel_index("Y") >= 0) {
+    image = select_channels(image, {"Y", "Y", "Y"});
+    image.channels = {"R", "G", "B"};
+  }
+  for (const char* name : {"R", "G", "B"}) {
+    if (image.channel_index(name) < 0) {
+      throw Error(file.string() + ": an environment needs the channels R, G, B (or Y)");
+    }
+  }
+  image = select_channels(image, {"R", "G", "B"});
+  for (float& value : image.pixels) {
+    if (!std::isfinite(value)) throw Error(file.string() + ": holds pixels that are no numbers");
+    value = std::max(value, 0.0f);  // wavelet and resampling filters leave small negative ones
+  }
+  return image;
+}
+
 Environment read_environment(YamlScene& scene, const YamlView& view) {
   const YamlMap map = view.map("environment", {"radiance", "color", "image", "rotate"});
   Environment environment;
   environment.radiance = read_emitted(scene, map, "radiance");
   if (const auto image = map.find("image")) {
-    environment.image = read_texture_file(scene, *image, true);
+    environment.pattern = read_sky_image(*image);
   }
   if (const auto rotate = map.find("rotate")) {
     environment.to_scene.rotate(Eigen::AngleAxisd(rotate->number() * kRadians, Vec3d::UnitY()));

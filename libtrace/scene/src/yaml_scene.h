@@ -101,4 +101,11 @@ void append(Placed& all, const Placed& part, const Eigen::Affine3d& place, const
 /// Photometric quantities of a model file, put into a scene in watts.
 void convert_to_watts(Light& light);
 
+// ---- yaml_daylight.cpp ----
+
+/// `sky`, `sun` and `north` of a scene file.
+void read_daylight(YamlScene& scene, const YamlMap& top);
+/// `portals`, once all objects are there.
+void read_portals(YamlScene& scene, const YamlView& view);
+
 }  // namespace atrium::scene

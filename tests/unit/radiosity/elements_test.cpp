@@ -4,32 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include "unit/radiosity/box_scene.h"
+#include "unit/radiosity/refined_scenes.h"
 
 namespace atrium::radiosity {
 namespace {
 
 using scene::ObjectId;
 using scene::Scene;
+using test::area_of;
+using test::expect_lookup_agrees;
 using test::SceneMaker;
-
-double area_of(const Elements& e) {
-  double sum = 0.0;
-  for (const float a : e.layout.element_area) sum += static_cast<double>(a);
-  return sum;
-}
-
-// Every piece lies in its triangle's element: the centre of a piece is found again.
-void expect_lookup_agrees(const Scene& scene, const Elements& e) {
-  for (std::uint32_t i = 0; i < e.layout.element_count(); ++i)
-    for (std::uint32_t p = e.first_piece[i]; p < e.first_piece[i + 1]; ++p) {
-      const ElementPiece& piece = e.pieces[p];
-      Vec3f centre = Vec3f::Zero();
-      for (const Vec3f& c : piece.corners) centre += c;
-      centre /= static_cast<float>(piece.corners.size());
-      EXPECT_EQ(e.layout.element_at(scene, piece.object, piece.triangle, centre), i);
-    }
-}
 
 TEST(Elements, RectangleIsCutIntoWholeCells) {
   SceneMaker maker;
@@ -91,19 +75,7 @@ TEST(Elements, BudgetIsKept) {
 }
 
 TEST(Elements, ThousandsOfSeparateScrapsAreGathered) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<float> place(0.0f, 1.0f);
-  std::vector<Vec3f> p;
-  std::vector<scene::Triangle> t;
-  for (std::uint32_t i = 0; i < 20000; ++i) {
-    const Vec3f at(place(random), place(random), place(random));
-    for (int k = 0; k < 3; ++k)
-      p.emplace_back(at + 0.01f * Vec3f(place(random), place(random), place(random)));
-    t.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  SceneMaker maker;
-  maker.object(maker.material(test::diffuse(0.5)), p, t);
-  const Scene scene = maker.take();
+  const Scene scene = test::scraps(20000);
   const Elements e = make_elements(scene, {.max_elements = 2000});
   EXPECT_LE(e.layout.element_count(), 2000U);
   EXPECT_EQ(e.pieces.size(), 20000U);

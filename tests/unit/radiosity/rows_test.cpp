@@ -2,37 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "material/error.h"
-#include "unit/radiosity/box_scene.h"
+#include "unit/radiosity/row_box.h"
 
 namespace atrium::radiosity {
 namespace {
 
 using test::SceneMaker;
-
-struct Box {
-  explicit Box(scene::Scene s) : scene(std::move(s)) {}
-  scene::Scene scene;
-  scene::RayQuery query{scene};
-  scene::Shading<1> shading{query, material::SpectralBasis::grey()};
-  SolveOptions options{.element_size = 0.5, .row_rays = 32, .tolerance = 1e-7};
-  Elements elements = make_elements(scene, {.element_size = options.element_size});
-  Problem<1> problem{shading, elements, options};
-  scene::Control control;
-  Work work{control, 0.0};
-  scene::Counters counters;
-  Rows<1> rows() {
-    return trace_rows<1>(problem, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1), 0,
-                         32, work, counters);
-  }
-};
-
-scene::Scene closed_box(double reflectance) {
-  SceneMaker maker;
-  maker.room({0, 0, 0}, {3, 2, 2.5f}, maker.material(test::diffuse(reflectance)));
-  maker.point_light({1, 1, 1}, 1.0);
-  return maker.take();
-}
+using test::Box;
+using test::closed_box;
 
 // In a closed room every ray of an inner side ends on an inner side: rows sum to the ray count
 // exactly (sums of ones).
@@ -54,43 +31,13 @@ TEST(Rows, ClosedRoomSumsToOneExactly) {
   EXPECT_GT(inner, 100);
 }
 
-// Furnace: uniform irradiance S from lights and rows that sum to one give I = S rho / (1 - rho)
-// in every element, whatever the rays hit.
-TEST(Rows, FurnaceIsExact) {
-  for (const double rho : {0.2, 0.5, 0.9}) {
-    SCOPED_TRACE(rho);
-    Box box{closed_box(rho)};
-    const Rows<1> rows = box.rows();
-    SideValues<1> source(box.problem.side_count(), Spectrum<1>(2.0f));
-    const SideValues<1> none(box.problem.side_count());
-    SideValues<1> indirect(box.problem.side_count());
-    box.options.max_iterations = 500;
-    const Iteration it = solve_rows(box.problem, rows, source, none, indirect, box.work);
-    EXPECT_TRUE(it.converged);
-    const double exact = 2.0 * rho / (1.0 - rho);
-    for (const SideIndex i : box.problem.sides.active)
-      if (side_of(i) == scene::Side::Front) {
-        EXPECT_NEAR(indirect[i][0], exact, 3e-6 * exact / (1.0 - rho));  // rounding of floats
-      }
-  }
-}
-
-TEST(Rows, EnclosureThatReflectsEverythingIsRefused) {
-  Box box{closed_box(1.0)};
-  const Rows<1> rows = box.rows();
-  const SideValues<1> source(box.problem.side_count(), Spectrum<1>(1.0f));
-  const SideValues<1> none(box.problem.side_count());
-  SideValues<1> indirect(box.problem.side_count());
-  EXPECT_THROW(solve_rows(box.problem, rows, source, none, indirect, box.work), Error);
-}
-
 // Rays 0..15 and then 16..31 make the same rows as 0..31 at once.
 TEST(Rows, RoundsAddUp) {
   Box box{closed_box(0.5)};
   const std::vector<std::uint8_t> all(box.problem.sides.active.size(), 1);
-  Rows<1> half = trace_rows<1>(box.problem, {}, all, 0, 16, box.work, box.counters);
+  Rows<1> half = trace_rows<1>(box.problem, {}, {}, all, 0, 16, box.work, box.counters);
   const Rows<1> both =
-      trace_rows<1>(box.problem, std::move(half), all, 16, 32, box.work, box.counters);
+      trace_rows<1>(box.problem, {}, std::move(half), all, 16, 32, box.work, box.counters);
   const Rows<1> once = box.rows();
   ASSERT_EQ(both.entries.size(), once.entries.size());
   for (std::size_t e = 0; e < once.entries.size(); ++e) {

@@ -1,6 +1,7 @@
 #include "scene/solution_io.h"
 
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,8 @@ using atrium::scene::SurfaceField;
 using atrium::scene::write_solution;
 using atrium::test::TempFolder;
 
-/// Two facets of 2x1 cells, three elements (one cell is empty), three lanes.
+/// Two facets of 2x1 cells, three elements, three lanes. One cell is empty, one has a single
+/// occupied child.
 Solution sample_solution() {
   Solution s;
   s.scene_hash = 0x0123456789abcdefULL;
@@ -36,10 +38,13 @@ Solution sample_solution() {
     f.facets[i].ny = 1;
     f.facets[i].first_cell = 2 * i;
   }
-  f.cell_element = {0, 1, 2, SurfaceField::kNone};
+  constexpr std::uint32_t kNone = SurfaceField::kNone;
+  f.nodes = {0, 1, SurfaceField::kInner | 4U, kNone, kNone, 2, kNone, kNone};
   f.triangle_facet = {0, 1, SurfaceField::kNone};
   f.element_facet = {0, 0, 1};
-  f.element_cell = {0, 1, 0};
+  f.element_level = {0, 0, 1};
+  f.element_x = {0, 1, 1};
+  f.element_y = {0, 0, 0};
   f.element_area = {1.0f, 0.5f, 0.25f};
   for (int i = 0; i < 18; ++i) f.irradiance.direct.push_back(static_cast<float>(i));
   f.irradiance.indirect.assign(18, 7.0f);
@@ -62,7 +67,8 @@ TEST(SolutionIo, RoundTrip) {
   EXPECT_EQ(a.basis, b.basis);
   EXPECT_EQ(a.options, b.options);
   EXPECT_EQ(a.field.unit, b.field.unit);
-  EXPECT_EQ(a.field.cell_element, b.field.cell_element);
+  EXPECT_EQ(a.field.nodes, b.field.nodes);
+  EXPECT_EQ(a.field.element_level, b.field.element_level);
   EXPECT_EQ(a.field.irradiance.direct, b.field.irradiance.direct);
   EXPECT_TRUE(b.field.irradiance.caustic.empty());
   EXPECT_EQ(a.field.valid, b.field.valid);
@@ -103,9 +109,17 @@ TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
     write_solution(s, folder / "a.atrium");
     EXPECT_THROW((void)read_solution(folder / "a.atrium"), Error);
   };
-  refused([](SurfaceField& f) { f.cell_element[0] = 3; });
+  refused([](SurfaceField& f) { f.nodes[0] = 3; });
+  refused([](SurfaceField& f) { f.nodes[2] = SurfaceField::kInner | 5U; });  // past the end
+  refused([](SurfaceField& f) { f.nodes[5] = SurfaceField::kInner | 4U; });  // backwards
+  refused([](SurfaceField& f) { f.nodes[3] = SurfaceField::kInner | 4U; });  // two parents
+  refused([](SurfaceField& f) { f.element_level[2] = 0; });                  // not where it is
+  refused([](SurfaceField& f) { f.element_level[2] = 13; });
+  refused([](SurfaceField& f) { f.element_x[1] = 2; });
+  refused([](SurfaceField& f) { f.element_facet[0] = 7; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
-  refused([](SurfaceField& f) { f.facets[1].first_cell = 3; });
+  refused([](SurfaceField& f) { f.facets[1].first_cell = 7; });
+  refused([](SurfaceField& f) { f.facets[1].nx = 0; });
   refused([](SurfaceField& f) { f.irradiance.direct.pop_back(); });
   refused([](SurfaceField& f) { f.lanes = 5; });
 }
@@ -130,6 +144,20 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].to_scene.translation().z() = 1.0; }));
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].kind = atrium::scene::SpotLight{}; }));
   EXPECT_TRUE(changed([](Scene& s) { s.environment.emplace(); }));
+  std::set<std::uint64_t> skies;
+  const auto add_sky = [&](int type, const atrium::Vec3d& sun, double ground) {
+    Scene other = scene;
+    other.environment.emplace().pattern =
+        atrium::scene::SkyDome(atrium::scene::cie_sky(type), sun, ground);
+    skies.insert(hash_scene(other));
+  };
+  const atrium::Vec3d up = atrium::Vec3d::UnitY(), side = atrium::Vec3d(1, 1, 0).normalized();
+  add_sky(12, up, 0.2);
+  add_sky(12, up, 0.3);
+  add_sky(12, side, 0.2);
+  add_sky(13, up, 0.2);
+  add_sky(16, up, 0.2);
+  EXPECT_EQ(skies.size(), 5u);
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
 }
 

@@ -9,6 +9,8 @@
 #include "material/frame.h"
 #include "material/spectral_value.h"
 #include "scene/ids.h"
+#include "scene/image.h"
+#include "scene/sky.h"
 
 namespace atrium::scene {
 
@@ -61,11 +63,24 @@ struct Light {
   Eigen::Affine3d to_scene = Eigen::Affine3d::Identity();
 };
 
-/// Radiance from infinitely far away.
+/// The same radiance from everywhere.
+struct UniformSky {};
+
+/// Radiance from infinitely far away, in its own frame: y up, x to the east, z to the south.
 struct Environment {
-  SpectralValue radiance = 0.0;  ///< multiplies the image if there is one
-  TextureId image;               ///< latitude-longitude; invalid: constant
+  /// Radiance of a UniformSky; factor on an image; irradiance of the ground from a SkyDome.
+  SpectralValue radiance = 0.0;
+  /// Images are latitude-longitude, of the channels R, G, B, linear, finite and >= 0; the direction
+  /// of a point (u, v) is u = 0.5 + atan2(x, -z) / (2 pi), v = acos(y) / pi.
+  std::variant<UniformSky, Image, SkyDome> pattern;
   Eigen::Affine3d to_scene = Eigen::Affine3d::Identity();
+};
+
+/// Openings through which rooms see the sky: hints that make its light less noisy, no more.
+struct PortalHints {
+  bool find = true;                          ///< take panes between inside and outside as openings
+  std::vector<std::vector<Vec3d>> polygons;  ///< flat and convex, either side is the inside
+  std::vector<std::string> objects;          ///< names of objects that cover an opening
 };
 
 }  // namespace atrium::scene

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "material/spectral_basis.h"
+#include "scene/portal.h"
 #include "scene/ray_query.h"
 #include "scene/scene.h"
 
@@ -31,11 +33,14 @@ struct EmissionSample {
 };
 
 /// Chooses lights for next event estimation and photons: a bounding hierarchy over all lights and
-/// emissive triangles with their power, extent and orientation (Conty Estevez & Kulla 2018).
+/// emissive triangles with their power, extent and orientation (Conty Estevez & Kulla 2018); sun and
+/// sky besides, within rooms mostly through their openings.
 template <int N>
 class LightSampler {
  public:
-  LightSampler(const Scene& scene, const material::SpectralBasis& basis);
+  /// \param portals  find_portals(); they change the noise, not the mean.
+  LightSampler(const Scene& scene, const material::SpectralBasis& basis,
+               std::vector<Portal> portals = {});
   ~LightSampler();
   LightSampler(LightSampler&&) noexcept;
 

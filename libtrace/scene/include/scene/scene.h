@@ -31,6 +31,7 @@ struct Model {
   std::vector<Light> lights;    ///< to_scene is to_world here
   std::vector<Camera> cameras;  ///< likewise
   std::optional<Environment> environment;
+  PortalHints portals;          ///< in world coordinates
   RadianceUnit unit = RadianceUnit::Nit;
   std::vector<std::string> warnings;  ///< one line each: what was found and what was done instead
 };
@@ -63,6 +64,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::optional<Environment> environment;
+  PortalHints portals;
   RadianceUnit unit = RadianceUnit::Nit;
 
   Vec3d origin = Vec3d::Zero();  ///< world position of the scene's coordinate origin [m]

@@ -16,18 +16,22 @@ enum class Side : std::uint8_t { Front = 0, Back = 1 };
 /// Irradiance on both sides of every diffuse surface: what radiosity hands to ray tracing.
 ///
 /// The surface is cut into facets (connected, nearly flat, one object); a regular grid lies in each
-/// facet's plane and every occupied cell is one element. So an element is found from (object,
-/// triangle, u, v) by one projection, whatever the triangulation, and small triangles share cells
-/// while large ones span many. Values are per element and side, per lane; look-ups interpolate
-/// bilinearly between the centres of the occupied cells of one facet.
+/// facet's plane, and each of its cells is the root of a quadtree. Every occupied leaf is one
+/// element. So an element is found from (object, triangle, u, v) by one projection, whatever the
+/// triangulation, and small triangles share cells while large ones span many. Leaves that touch
+/// within a facet differ by one level at most. Values are per element and side, per lane.
 struct SurfaceField {
   static constexpr std::uint32_t kNone = 0xffffffffU;
+  /// In a node: the rest is the index of the first of four children. Not set in an element's index.
+  static constexpr std::uint32_t kInner = 0x80000000U;
+  static constexpr int kMaxLevel = 12;
 
   struct Facet {
     Vec3f origin;             ///< scene coordinates of the grid's corner
     Vec3f axis_u, axis_v;     ///< in the plane, length 1 / cell size [1/m]
     std::uint32_t nx = 0, ny = 0;
-    std::uint32_t first_cell = 0;  ///< into cell_element
+    std::uint32_t first_cell = 0;  ///< into nodes
+    std::uint8_t clump = 0;        ///< many tiny regions as one cell: its plane means little
   };
   /// What is stored per element and side. Empty arrays: not computed because not needed.
   /// Irradiance [W/m^2 or lx-related lanes], index (element * 2 + side) * lanes + lane.
@@ -39,10 +43,15 @@ struct SurfaceField {
 
   int lanes = 0;
   std::vector<Facet> facets;
-  std::vector<std::uint32_t> cell_element;      ///< element of a cell or kNone
+  /// The cells of all facets (level 0), then blocks of four children, in the order
+  /// (x, y) = 00, 10, 01, 11. A node is an element, kNone, or kInner | index of its first child,
+  /// which is above its own index.
+  std::vector<std::uint32_t> nodes;
   std::vector<std::uint32_t> triangle_facet;    ///< by Object::first_triangle + triangle, or kNone
   std::vector<std::uint32_t> element_facet;
-  std::vector<std::uint32_t> element_cell;      ///< iy * nx + ix within the facet
+  std::vector<std::uint8_t> element_level;      ///< 0: a cell of the facet's grid; each level halves
+  std::vector<std::uint32_t> element_x;         ///< cell coordinates at the element's level:
+  std::vector<std::uint32_t> element_y;         ///< in [0, nx << level), [0, ny << level)
   std::vector<float> element_area;              ///< [m^2]
 
   Quantities irradiance;                        ///< E
@@ -55,18 +64,42 @@ struct SurfaceField {
   [[nodiscard]] std::size_t element_count() const { return element_facet.size(); }
   [[nodiscard]] bool empty() const { return element_facet.empty(); }
 
+  [[nodiscard]] static bool is_inner(std::uint32_t node) {
+    return (node & kInner) != 0 && node != kNone;
+  }
+  /// A child of an inner node, by the lowest bits of its coordinates.
+  [[nodiscard]] std::uint32_t child(std::uint32_t node, std::uint32_t x, std::uint32_t y) const {
+    return nodes[(node & ~kInner) + 2 * (y & 1U) + (x & 1U)];
+  }
+  /// What lies at a cell of a level: the leaf that covers it, with that leaf's level, or the inner
+  /// node of exactly this cell. kNone outside the grid and where there is no surface.
+  struct Cell {
+    std::uint32_t node = kNone;
+    int level = 0;
+  };
+  [[nodiscard]] Cell cell(const Facet& facet, int level, std::int64_t x, std::int64_t y) const;
+
   /// Element under a point, or kNone (no facet, or a cell that nothing was found in).
   [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                          const Vec3f& position) const;
 
-  /// Edge of the elements at a triangle [m]; 0 where there are none.
-  [[nodiscard]] float cell_size(const Scene& scene, ObjectId object, std::uint32_t triangle) const;
+  /// Longer edge of an element's cell [m].
+  [[nodiscard]] float element_size(std::uint32_t element) const;
 
-  /// Weights of up to four elements that interpolate at a point; weights sum to 1 if count > 0.
+  /// Weights of the elements that interpolate at a point; all positive, sum 1 if count > 0. Only
+  /// elements whose side is valid take part.
+  ///
+  /// Bilinear between the four cells of the leaf's own level round the point. Where such a cell is
+  /// divided further its value is the mean of its leaves; where a coarser leaf covers it, the
+  /// coarser level is interpolated at its centre. So linear functions (given by their cell means)
+  /// are met exactly inside a facet, on graded meshes too, and no new extrema arise; beyond the
+  /// outermost centres the value is constant. Across a change of level there is a step of second
+  /// order.
   struct Stencil {
+    static constexpr int kCapacity = 64;  ///< what does not fit is left out
     int count = 0;
-    std::uint32_t element[4];
-    float weight[4];
+    std::uint32_t element[kCapacity];
+    float weight[kCapacity];
   };
   [[nodiscard]] Stencil stencil(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                 const Vec3f& position, Side side) const;

@@ -1,0 +1,269 @@
+// Ray rate of the radiosity pass against bare Embree on the same rays in the same run: hemisphere
+// rays of the elements of a 16-room building, ROBUST scene, CPU time of one thread. Every round
+// runs all cases in turn; printed are medians over the rounds, of rates and of ratios by round.
+//
+//   row_rays [--rounds N] [--sides N] [--rays N] [--size METRES]
+#include <ctime>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "building.h"
+#include "hemisphere.h"
+#include "passes.h"
+
+namespace {
+
+using namespace atrium;
+using namespace atrium::radiosity;
+using scene::Counter;
+using scene::Counters;
+using scene::Ray;
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Embree without anything of ours: one geometry per object, as scene::RayQuery has it.
+class Bare {
+ public:
+  explicit Bare(const scene::Scene& scene) : device_(rtcNewDevice(nullptr)) {
+    top_ = rtcNewScene(device_);
+    rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST);
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+      const scene::Mesh& mesh = scene.mesh_of(scene::ObjectId(i));
+      RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+      std::memcpy(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                          mesh.positions.size()),
+                  mesh.positions.data(), mesh.positions.size() * 12);
+      std::memcpy(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                          mesh.triangles.size()),
+                  mesh.triangles.data(), mesh.triangles.size() * 12);
+      rtcCommitGeometry(g);
+      rtcAttachGeometryByID(top_, g, i);
+      rtcReleaseGeometry(g);
+    }
+    rtcCommitScene(top_);
+  }
+  ~Bare() {
+    rtcReleaseScene(top_);
+    rtcReleaseDevice(device_);
+  }
+
+  /// \return  the number of hits.
+  std::size_t single(const std::vector<Ray>& rays) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    std::size_t hits = 0;
+    for (const Ray& ray : rays) {
+      RTCRayHit h = ray_hit(ray);
+      rtcIntersect1(top_, &context, &h);
+      hits += h.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1U : 0U;
+    }
+    return hits;
+  }
+
+  /// Eight at a time, within groups of `group` rays sorted by octant of the direction.
+  std::size_t packets(const std::vector<Ray>& rays, std::size_t group) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    std::size_t hits = 0;
+    std::vector<std::uint32_t> order(group);
+    for (std::size_t first = 0; first + group <= rays.size(); first += group) {
+      for (std::uint32_t i = 0; i < group; ++i) order[i] = i;
+      const auto octant = [&](std::uint32_t i) {
+        const Vec3f& d = rays[first + i].direction;
+        return (d.x() < 0) + 2 * (d.y() < 0) + 4 * (d.z() < 0);
+      };
+      std::stable_sort(order.begin(), order.end(),
+                       [&](std::uint32_t a, std::uint32_t b) { return octant(a) < octant(b); });
+      for (std::size_t k = 0; k < group; k += 8) {
+        alignas(32) RTCRayHit8 h;
+        alignas(32) int valid[8];
+        for (std::size_t i = 0; i < 8; ++i) {
+          valid[i] = k + i < group ? -1 : 0;
+          if (valid[i] != 0) set(h, i, rays[first + order[k + i]]);
+        }
+        rtcIntersect8(valid, top_, &context, &h);
+        for (int i = 0; i < 8; ++i)
+          hits += valid[i] != 0 && h.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID ? 1U : 0U;
+      }
+    }
+    return hits;
+  }
+
+  /// rtcIntersect1M, `group` rays at a time.
+  std::size_t stream(const std::vector<Ray>& rays, std::size_t group) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    std::size_t hits = 0;
+    std::vector<RTCRayHit> h(group);
+    for (std::size_t first = 0; first + group <= rays.size(); first += group) {
+      for (std::size_t i = 0; i < group; ++i) h[i] = ray_hit(rays[first + i]);
+      rtcIntersect1M(top_, &context, h.data(), static_cast<unsigned>(group), sizeof(RTCRayHit));
+      for (const RTCRayHit& r : h) hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1U : 0U;
+    }
+    return hits;
+  }
+
+ private:
+  static RTCRayHit ray_hit(const Ray& ray) {
+    RTCRayHit h;
+    h.ray.org_x = ray.origin.x(), h.ray.org_y = ray.origin.y(), h.ray.org_z = ray.origin.z();
+    h.ray.dir_x = ray.direction.x(), h.ray.dir_y = ray.direction.y();
+    h.ray.dir_z = ray.direction.z();
+    h.ray.tnear = ray.tmin, h.ray.tfar = ray.tmax, h.ray.time = 0.0f;
+    h.ray.mask = 0xffffffffU, h.ray.id = 0, h.ray.flags = 0;
+    h.hit.geomID = h.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return h;
+  }
+  static void set(RTCRayHit8& h, std::size_t i, const Ray& ray) {
+    h.ray.org_x[i] = ray.origin.x(), h.ray.org_y[i] = ray.origin.y();
+    h.ray.org_z[i] = ray.origin.z(), h.ray.dir_x[i] = ray.direction.x();
+    h.ray.dir_y[i] = ray.direction.y(), h.ray.dir_z[i] = ray.direction.z();
+    h.ray.tnear[i] = ray.tmin, h.ray.tfar[i] = ray.tmax, h.ray.time[i] = 0.0f;
+    h.ray.mask[i] = 0xffffffffU, h.ray.id[i] = 0, h.ray.flags[i] = 0;
+    h.hit.geomID[i] = h.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+
+  RTCDevice device_;
+  RTCScene top_;
+};
+
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+struct Case {
+  std::string name;
+  std::function<std::size_t()> run;  ///< returns the rays traced
+  std::vector<double> rates{};       ///< [Mray/s], by round
+};
+
+void print(std::vector<Case>& cases, int rounds) {
+  for (int round = 0; round < rounds; ++round)
+    for (Case& c : cases) {
+      const double start = cpu_seconds();
+      const std::size_t rays = c.run();
+      c.rates.push_back(1e-6 * static_cast<double>(rays) / (cpu_seconds() - start));
+    }
+  std::printf(
+      "\n| rays of one thread | Mray/s | ns per ray | cost against bare |\n"
+      "| --- | ---: | ---: | ---: |\n");
+  for (const Case& c : cases) {
+    std::vector<double> ratio(c.rates.size());
+    for (std::size_t r = 0; r < ratio.size(); ++r) ratio[r] = cases[0].rates[r] / c.rates[r];
+    const double rate = median(c.rates);
+    std::printf("| %s | %.2f | %.0f | %.2f |\n", c.name.c_str(), rate, 1e3 / rate, median(ratio));
+  }
+}
+
+/// Runs of 128 sides in order, as a chunk of a solve has them, from everywhere in the scene.
+std::vector<SideIndex> spread(const std::vector<SideIndex>& all, std::size_t count) {
+  constexpr std::size_t kRun = 128;
+  const std::size_t runs = all.size() / kRun;
+  const std::size_t wanted = std::clamp<std::size_t>(count / kRun, 1, runs);
+  std::vector<SideIndex> some;
+  for (std::size_t r = 0; r < wanted; ++r) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(r * runs / wanted * kRun);
+    some.insert(some.end(), first, first + kRun);
+  }
+  return some;
+}
+
+template <int N>
+void measure(const scene::RayQuery& query, const material::SpectralBasis& basis, int rounds,
+             std::size_t sides, int per_side, double size) {
+  const scene::Scene& scene = query.scene();
+  const scene::Shading<N> shading(query, basis);
+  const SolveOptions options{.element_size = size, .row_rays = 0, .gather_rays = per_side};
+  const Elements elements = make_elements(scene, {.element_size = size});
+  Problem<N> problem(shading, elements, options);
+  std::vector<SideIndex>& active = problem.sides.active;
+  std::printf("\n%d lane(s): %llu triangles, %zu elements, %zu sides; ", N,
+              static_cast<unsigned long long>(scene.triangle_count()),
+              elements.layout.element_count(), active.size());
+  active = spread(active, sides);
+  std::vector<Ray> rays;
+  const auto generate = [&] {
+    rays.clear();
+    for (const SideIndex i : active)
+      for (int r = 0; r < per_side; ++r) {
+        scene::Sampler sampler(options.seed, i, static_cast<std::uint32_t>(r));
+        rays.push_back(HemisphereRay<N>(problem, i, sampler).ray);
+      }
+    return rays.size();
+  };
+  generate();
+  std::printf("%zu rays, %d per side\n", rays.size(), per_side);
+
+  const Bare bare(scene);
+  const scene::Control control;
+  Work work(control, 0.0);
+  Counters counters;
+  const std::vector<std::uint8_t> all(active.size(), 1);
+  const SideValues<N> field(problem.side_count(), Spectrum<N>::one());
+  std::size_t hits = 0;
+  const auto counted = [&](auto&& f) {
+    return [&rays, &hits, f] {
+      hits += f();
+      return rays.size();
+    };
+  };
+  const auto group = static_cast<std::size_t>(per_side);
+  std::vector<Case> cases{
+      {"bare rtcIntersect1", counted([&] { return bare.single(rays); })},
+      {"bare rtcIntersect8, sorted by octant", counted([&] { return bare.packets(rays, group); })},
+      {"bare rtcIntersect1M", counted([&] { return bare.stream(rays, group); })},
+      {"RayQuery::closest", counted([&] {
+         std::size_t n = 0;
+         for (const Ray& r : rays) n += query.closest(r, counters, Counter::RaysRow) ? 1U : 0U;
+         return n;
+       })},
+      {"making the rays", generate},
+      {"trace_rows",
+       [&] {
+         Counters c;
+         const Rows<N> rows = trace_rows<N>(problem, {}, all, 0, per_side, work, c);
+         hits += rows.entries.size();
+         return static_cast<std::size_t>(c[Counter::RaysRow]);
+       }},
+      {"gather", [&] {
+         Counters c;
+         const Gathered<N> g = gather(problem, field, work, c);
+         hits += g.rays.size();
+         return static_cast<std::size_t>(c[Counter::RaysRow]);
+       }}};
+  print(cases, rounds);
+  std::printf("(%zu)\n", hits);  // keeps the compiler from leaving anything out
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int rounds = 7, rays = 64;
+  std::size_t sides = 8000;
+  double size = 0.2;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string name = argv[i];
+    if (name == "--rounds") rounds = std::max(1, std::atoi(argv[i + 1]));
+    if (name == "--rays") rays = std::max(8, std::atoi(argv[i + 1]));
+    if (name == "--sides") sides = static_cast<std::size_t>(std::max(1, std::atoi(argv[i + 1])));
+    if (name == "--size") size = std::max(0.01, std::atof(argv[i + 1]));
+  }
+  const scene::ThreadLimit one(1);
+  const scene::Scene scene = make_building();
+  const scene::RayQuery query(scene);
+  measure<1>(query, material::SpectralBasis::grey(), rounds, sides, rays, size);
+  measure<3>(query, material::SpectralBasis::rgb(), rounds, sides, rays, size);
+}

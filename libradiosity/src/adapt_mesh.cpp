@@ -1,0 +1,254 @@
+#include "adapt_mesh.h"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+namespace atrium::radiosity {
+namespace {
+
+constexpr int kPilot = 16;  ///< light samples per side while elements are being divided
+
+Vec3f centre_of(const Elements& elements, std::uint32_t e) {
+  Vec3d sum = Vec3d::Zero();
+  double area = 0.0;
+  for (std::uint32_t p = elements.first_piece[e]; p < elements.first_piece[e + 1]; ++p) {
+    const ElementPiece piece = elements.pieces[p];
+    for (std::size_t k = 1; k + 1 < piece.corners.size(); ++k) {
+      const Vec3f& a = piece.corners[0];
+      const Vec3f& b = piece.corners[k];
+      const Vec3f& c = piece.corners[k + 1];
+      const double w = static_cast<double>((b - a).cross(c - a).norm());
+      sum += w / 3.0 * (a + b + c).template cast<double>();
+      area += w;
+    }
+  }
+  return area > 0.0 ? Vec3f((sum / area).cast<float>()) : elements.pieces[elements.first_piece[e]].corners[0];
+}
+
+double asked_mesh_error(const SolveOptions& o) {
+  if (o.mesh_error > 0.0) return o.mesh_error;
+  return o.error > 0.0 ? 0.7 * o.error : 0.03;
+}
+
+/// Direct irradiance (lane mean) of every side, and the variance of each value.
+struct Light {
+  std::vector<float> value, variance;
+};
+
+template <int N>
+Light light_of(const Problem<N>& problem, const Tally<N>& tally) {
+  Light light{std::vector<float>(problem.side_count(), 0.0f),
+              std::vector<float>(problem.side_count(), 0.0f)};
+  for (const SideIndex i : problem.sides.active) {
+    for (std::size_t g = 0; g < tally.groups(); ++g) light.value[i] += tally.mean(i, g).mean();
+    light.variance[i] = static_cast<float>(tally.variance(i));
+  }
+  return light;
+}
+
+/// What indirect light adds everywhere, about: the mean of a closed room of the mean reflectance
+/// (Sumpner 1892). Only the scale of relative errors depends on it.
+template <int N>
+double ambient(const Problem<N>& problem, const Light& light) {
+  double area = 0.0;
+  double flux = 0.0;
+  double reflected = 0.0;
+  for (const SideIndex i : problem.sides.active) {
+    const double a = static_cast<double>(problem.area(i));
+    area += a;
+    flux += a * static_cast<double>(light.value[i]);
+    reflected += a * static_cast<double>(problem.sides.reflectance[i].mean());
+  }
+  const double rho = area > 0.0 ? std::min(0.9, reflected / area) : 0.0;
+  return area > 0.0 ? flux / area * rho / (1.0 - rho) : 0.0;
+}
+
+/// How far a bilinear interpolation over the elements round side i is off: an eighth of the second
+/// difference across it; beside an edge of the facet, where the value goes on constant, a quarter
+/// of the first one. Squared; what noise explains is taken off.
+double squared_miss(const std::vector<EdgeNeighbours>& neighbours, const Light& light,
+                    SideIndex i) {
+  const auto mean_at = [&](int edge, double& value, double& variance) {
+    double count = 0.0;
+    value = variance = 0.0;
+    for (int k = 0; k < 2; ++k) {
+      const std::uint32_t n = neighbours[i / 2][static_cast<std::size_t>(2 * edge + k)];
+      if (n == scene::SurfaceField::kNone) continue;
+      const SideIndex j = side_index(n, side_of(i));
+      value += static_cast<double>(light.value[j]);
+      variance += static_cast<double>(light.variance[j]);
+      count += 1.0;
+    }
+    if (count > 0.0) value /= count, variance /= count * count;
+    return count > 0.0;
+  };
+  const double own = static_cast<double>(light.value[i]);
+  const double noise = static_cast<double>(light.variance[i]);
+  double miss = 0.0;
+  for (const int axis : {0, 1}) {
+    double a = 0.0;
+    double b = 0.0;
+    double va = 0.0;
+    double vb = 0.0;
+    const bool low = mean_at(2 * axis, a, va);
+    const bool high = mean_at(2 * axis + 1, b, vb);
+    if (low && high)
+      miss += (std::pow(a - 2.0 * own + b, 2) - va - 4.0 * noise - vb) / 64.0;
+    else if (low || high)
+      miss += (std::pow(low ? a - own : b - own, 2) - (low ? va : vb) - noise) / 16.0;
+  }
+  return std::max(0.0, miss);
+}
+
+template <int N>
+class MeshAdapter {
+ public:
+  MeshAdapter(const scene::Shading<N>& shading, Elements elements, const SolveOptions& options,
+              Work& work, scene::Counters& counters)
+      : shading_(shading), options_(options), work_(work), counters_(counters) {
+    mesh_.elements = std::move(elements);
+  }
+
+  AdaptedMesh<N> adapt() {
+    measure_all();
+    while (!work_.stopped()) {
+      const std::vector<std::uint8_t> split = choose();
+      if (split.empty()) break;
+      divide(split);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void measure_all() {
+    problem_ = std::make_unique<Problem<N>>(shading_, mesh_.elements, options_);
+    mesh_.direct =
+        Tally<N>(problem_->side_count(), problem_->group_count(), problem_->sides.any_coupled);
+    sample_direct(*problem_, DirectLights::All, {}, top_up(*problem_, mesh_.direct, problem_->sides.active, kPilot),
+                  mesh_.direct, work_, counters_);
+  }
+
+  /// Marks the elements that have to be divided; empty if none.
+  std::vector<std::uint8_t> choose() {
+    const Light light = light_of(*problem_, mesh_.direct);
+    const std::vector<EdgeNeighbours> neighbours = edge_neighbours(mesh_.elements.layout);
+    const std::size_t count = mesh_.elements.layout.element_count();
+    std::vector<double> contribution(count, 0.0);
+    const std::vector<double> weight = weights(light);
+    double total = 0.0;
+    for (const SideIndex i : problem_->sides.active) {
+      const double c = calibration_ * weight[i] * squared_miss(neighbours, light, i);
+      contribution[i / 2] += c;
+      total += c;
+    }
+    mesh_.error = std::sqrt(total);
+    const double target = std::pow(asked_mesh_error(options_), 2);
+    if (total <= target) return {};
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return contribution[a] > contribution[b];
+    });
+    std::vector<std::uint8_t> split(count, 0);
+    std::size_t room = options_.max_elements > count ? options_.max_elements - count : 0;
+    bool any = false;
+    for (const std::uint32_t e : order) {
+      if (total <= target || room < 3 || !(contribution[e] > 0.0)) break;
+      if (!splittable(mesh_.elements, e)) continue;
+      split[e] = 1;
+      any = true;
+      room -= 3;
+      total -= 0.75 * contribution[e];  // across an edge of light half the width is left
+    }
+    return any ? split : std::vector<std::uint8_t>();
+  }
+
+  std::vector<double> weights(const Light& light) const {
+    const double add = ambient(*problem_, light);
+    SideValues<N> irradiance(problem_->side_count());
+    for (const SideIndex i : problem_->sides.active)
+      irradiance[i] = Spectrum<N>(light.value[i] + static_cast<float>(add));
+    return error_weights(*problem_, irradiance);
+  }
+
+  void divide(const std::vector<std::uint8_t>& split) {
+    const Light before = light_of(*problem_, mesh_.direct);
+    Elements old = std::move(mesh_.elements);
+    Refined refined = refine(shading_.scene(), old, split);
+    mesh_.elements = std::move(refined.elements);
+    auto next = std::make_unique<Problem<N>>(shading_, mesh_.elements, options_);
+    Tally<N> tally(next->side_count(), next->group_count(), next->sides.any_coupled);
+    std::vector<SideIndex> fresh;
+    for (const SideIndex i : next->sides.active) {
+      const std::uint32_t parent = refined.parent[i / 2];
+      if (mesh_.elements.layout.element_level[i / 2] == old.layout.element_level[parent]) {
+        tally.copy(i, mesh_.direct, side_index(parent, side_of(i)));
+        continue;
+      }
+      fresh.push_back(i);
+    }
+    sample_direct(*next, DirectLights::All, {}, top_up(*next, tally, fresh, kPilot), tally, work_, counters_);
+    old.layout.valid = problem_->sides.is_active;
+    problem_ = std::move(next);
+    mesh_.direct = std::move(tally);
+    calibrate(old, before, fresh, refined.parent);
+  }
+
+  /// Parts against what the level of the whole said there: that ratio of measured to expected
+  /// squared miss holds for the elements that were not divided.
+  void calibrate(const Elements& old, const Light& before, const std::vector<SideIndex>& fresh,
+                 const std::vector<std::uint32_t>& parent) {
+    const Light light = light_of(*problem_, mesh_.direct);
+    const std::vector<double> weight = weights(light);
+    const std::vector<EdgeNeighbours> neighbours = edge_neighbours(old.layout);
+    double measured = 0.0;
+    double expected = 0.0;
+    for (const SideIndex i : fresh) {
+      const ElementPiece piece = mesh_.elements.pieces[mesh_.elements.first_piece[i / 2]];
+      const auto stencil = old.layout.stencil(shading_.scene(), piece.object, piece.triangle,
+                                              centre_of(mesh_.elements, i / 2), side_of(i));
+      if (stencil.count == 0) continue;
+      double value = 0.0;
+      double variance = static_cast<double>(light.variance[i]);
+      for (int k = 0; k < stencil.count; ++k) {
+        const SideIndex j = side_index(stencil.element[k], side_of(i));
+        const double w = static_cast<double>(stencil.weight[k]);
+        value += w * static_cast<double>(before.value[j]);
+        variance += w * w * static_cast<double>(before.variance[j]);
+      }
+      const double miss = std::pow(static_cast<double>(light.value[i]) - value, 2) - variance;
+      measured += weight[i] * miss;
+      expected += weight[i] *
+                  squared_miss(neighbours, before, side_index(parent[i / 2], side_of(i)));
+    }
+    if (expected > 0.0) calibration_ = std::clamp(measured / expected, 0.1, 10.0);
+  }
+
+  const scene::Shading<N>& shading_;
+  const SolveOptions& options_;
+  Work& work_;
+  scene::Counters& counters_;
+  AdaptedMesh<N> mesh_;
+  std::unique_ptr<Problem<N>> problem_;
+  double calibration_ = 1.0;
+};
+
+}  // namespace
+
+template <int N>
+AdaptedMesh<N> adapt_mesh(const scene::Shading<N>& shading, Elements elements,
+                          const SolveOptions& options, Work& work, scene::Counters& counters) {
+  return MeshAdapter<N>(shading, std::move(elements), options, work, counters).adapt();
+}
+
+#define ATRIUM_INSTANTIATE(N)                                                                    \
+  template AdaptedMesh<N> adapt_mesh(const scene::Shading<N>&, Elements, const SolveOptions&,    \
+                                     Work&, scene::Counters&);
+ATRIUM_INSTANTIATE(1)
+ATRIUM_INSTANTIATE(3)
+ATRIUM_INSTANTIATE(4)
+ATRIUM_INSTANTIATE(8)
+#undef ATRIUM_INSTANTIATE
+
+}  // namespace atrium::radiosity

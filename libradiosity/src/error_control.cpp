@@ -1,0 +1,163 @@
+#include "error_control.h"
+
+#include <algorithm>
+
+namespace atrium::radiosity {
+
+using scene::SurfaceField;
+
+Neighbours::Neighbours(const SurfaceField& layout) {
+  first_.push_back(0);
+  for (const EdgeNeighbours& edges : edge_neighbours(layout)) {
+    for (const std::uint32_t n : edges)
+      if (n != SurfaceField::kNone) element_.push_back(n);
+    first_.push_back(static_cast<std::uint32_t>(element_.size()));
+  }
+}
+
+namespace {
+
+/// Mean over a side and its neighbours.
+template <int N, class Value>
+double local_mean(const Neighbours& neighbours, SideIndex i, Value&& value) {
+  double sum = value(i);
+  double count = 1.0;
+  neighbours.visit(i, [&](SideIndex j) {
+    sum += value(j);
+    count += 1.0;
+  });
+  return sum / count;
+}
+
+}  // namespace
+
+template <int N>
+Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
+                        const SideValues<N>& guide, const std::vector<double>& variance)
+    : problem_(&problem), neighbours_(&neighbours) {
+  for (const SideIndex i : problem.sides.active)
+    neighbours.visit(i, [&](SideIndex j) {
+      const double d = static_cast<double>(guide[i].mean()) - static_cast<double>(guide[j].mean());
+      const double v = variance[i] + variance[j];
+      const bool takes_part = problem.sides.is_active[j] != 0 && v > 0.0;
+      weight_.push_back(takes_part ? static_cast<float>(v / (v + d * d)) : 0.0f);
+    });
+}
+
+template <int N>
+SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
+  SideValues<N> result(values.size());
+  std::size_t at = 0;
+  for (const SideIndex i : problem_->sides.active) {
+    Spectrum<N> sum = problem_->area(i) * values[i];
+    float area = problem_->area(i);
+    neighbours_->visit(i, [&](SideIndex j) {
+      const float a = weight_[at++] * problem_->area(j);
+      sum += a * values[j];
+      area += a;
+    });
+    result[i] = sum / area;
+  }
+  return result;
+}
+
+template <int N>
+std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance) {
+  double area = 0.0;
+  double flux = 0.0;
+  for (const SideIndex i : problem.sides.active) {
+    if (irradiance[i].is_zero()) continue;
+    area += static_cast<double>(problem.area(i));
+    flux += static_cast<double>(problem.area(i)) * static_cast<double>(irradiance[i].mean());
+  }
+  std::vector<double> weights(problem.side_count(), 0.0);
+  if (!(flux > 0.0)) return weights;
+  const double least = 0.01 * flux / area;
+  for (const SideIndex i : problem.sides.active) {
+    const double scale = std::max(least, static_cast<double>(irradiance[i].mean()));
+    weights[i] = static_cast<double>(problem.area(i)) / (area * scale * scale);
+  }
+  return weights;
+}
+
+template <int N>
+std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours& neighbours,
+                                    const Tally<N>& tally, Samples whose) {
+  const std::vector<SideIndex>& active = problem.sides.active;
+  std::vector<double> value(problem.side_count(), 0.0);
+  for (const SideIndex i : active)
+    for (std::size_t g = 0; g < tally.groups(); ++g)
+      value[i] += static_cast<double>(tally.mean(i, g).mean());
+  std::vector<double> scale(problem.side_count(), 0.0);     // squared
+  std::vector<double> relative(problem.side_count(), 0.0);  // variance over scale
+  double all = 0.0;
+  double count = 0.0;
+  for (const SideIndex i : active) {
+    const double mean = local_mean<N>(neighbours, i, [&](SideIndex j) { return value[j]; });
+    scale[i] = mean * mean;
+    if (!(scale[i] > 0.0) || tally.valid(i) == 0) continue;
+    relative[i] = tally.variance(i) * tally.valid(i) / scale[i];
+    all += relative[i];
+    count += 1.0;
+  }
+  std::vector<double> result(problem.side_count(), 0.0);
+  for (const SideIndex i : active) {
+    double sum = 0.0;
+    double near = 0.0;
+    const auto take = [&](SideIndex j) {
+      if (tally.valid(j) == 0 || !(scale[j] > 0.0)) return;
+      sum += relative[j];
+      near += 1.0;
+    };
+    if (whose == Samples::All) take(i);
+    neighbours.visit(i, take);
+    result[i] = scale[i] * (near > 0.0 ? sum / near : count > 0.0 ? all / count : 0.0);
+  }
+  return result;
+}
+
+template <int N>
+std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
+                                            const std::vector<double>& weights,
+                                            const std::vector<Stratum<N>>& strata, double target) {
+  constexpr double kGrowth = 4.0;
+  // Lagrange: n = lambda sqrt(weight * variance / cost); the sum of weight * variance / n is then
+  // root_costs / lambda.
+  double root_costs = 0.0;
+  for (const Stratum<N>& s : strata)
+    for (const SideIndex i : problem.sides.active)
+      root_costs += std::sqrt(weights[i] * s.variance[i] * s.cost);
+  const double lambda = root_costs / (target * target);
+  std::vector<std::vector<Draw>> plans(strata.size());
+  for (std::size_t c = 0; c < strata.size(); ++c) {
+    const Stratum<N>& s = strata[c];
+    for (const SideIndex i : problem.sides.active) {
+      const double have = s.tally->valid(i);
+      const double wanted = std::min(lambda * std::sqrt(weights[i] * s.variance[i] / s.cost),
+                                     kGrowth * std::max(have, 1.0 * kReplicates));
+      // Less than a quarter more is not worth a round.
+      if (!(wanted > 1.25 * have)) continue;
+      // Even numbers in each replicate; see HotPatches::kSamplesPerRay.
+      const auto more = static_cast<std::uint32_t>(
+          std::ceil((wanted - have) / (2.0 * kReplicates))) * 2;
+      plans[c].push_back({i, more});
+    }
+  }
+  return plans;
+}
+
+#define ATRIUM_INSTANTIATE(N)                                                                    \
+  template class Smoothing<N>;                                                                   \
+  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&);            \
+  template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
+                                               const Tally<N>&, Samples);                        \
+  template std::vector<std::vector<Draw>> plan_samples(const Problem<N>&,                        \
+                                                       const std::vector<double>&,               \
+                                                       const std::vector<Stratum<N>>&, double);
+ATRIUM_INSTANTIATE(1)
+ATRIUM_INSTANTIATE(3)
+ATRIUM_INSTANTIATE(4)
+ATRIUM_INSTANTIATE(8)
+#undef ATRIUM_INSTANTIATE
+
+}  // namespace atrium::radiosity

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <vector>
+
+#include "tally.h"
+
+namespace atrium::radiosity {
+
+/// Which sides lie next to each other in the same surface, on the same side: neighbours have
+/// nearly the same light but samples of their own.
+class Neighbours {
+ public:
+  explicit Neighbours(const scene::SurfaceField& layout);
+  template <class F>
+  void visit(SideIndex i, F&& f) const {
+    for (std::uint32_t k = first_[i / 2]; k < first_[i / 2 + 1]; ++k)
+      f(side_index(element_[k], side_of(i)));
+  }
+
+ private:
+  std::vector<std::uint32_t> first_, element_;
+};
+
+/// Weights of a smoothing over every side and its neighbours that takes noise off a field and
+/// leaves what is more than noise: a neighbour counts less the more standard errors its value is
+/// away, so more samples mean less smoothing.
+template <int N>
+class Smoothing {
+ public:
+  /// \param guide  noisy values by side. \param variance  of their lane means.
+  Smoothing(const Problem<N>& problem, const Neighbours& neighbours, const SideValues<N>& guide,
+            const std::vector<double>& variance);
+  [[nodiscard]] SideValues<N> operator()(const SideValues<N>& values) const;
+
+ private:
+  const Problem<N>* problem_;
+  const Neighbours* neighbours_;
+  std::vector<float> weight_;  ///< in the order that Neighbours visits active sides
+};
+
+/// How much a squared error of each side counts: area share over squared irradiance, which has a
+/// floor of 1 % of the mean. Sides that no light reaches do not count: they would only make the
+/// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 9).
+template <int N>
+[[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
+                                                const SideValues<N>& irradiance);
+
+/// Variance of one sample of each side (lane mean, all groups), pooled as relative variance: of the
+/// neighbours' samples for a decision about a side, which must not depend on the samples that it
+/// stops; of its own and the neighbours' samples for the report, which four replicates alone would
+/// make unsteady.
+enum class Samples { Neighbours, All };
+template <int N>
+[[nodiscard]] std::vector<double> sample_variance(const Problem<N>& problem,
+                                                  const Neighbours& neighbours,
+                                                  const Tally<N>& tally, Samples whose);
+
+/// One kind of sampling.
+template <int N>
+struct Stratum {
+  const Tally<N>* tally;
+  std::vector<double> variance;  ///< of one sample, Samples::Neighbours
+  double cost;                   ///< rays per sample
+};
+
+/// What to draw next so that the sum over strata of weight * variance / samples falls to
+/// `target`^2 at the least cost (Neyman allocation: samples as the root of weighted variance over
+/// cost); no side gets more than four times what it has.
+template <int N>
+[[nodiscard]] std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
+                                                          const std::vector<double>& weights,
+                                                          const std::vector<Stratum<N>>& strata,
+                                                          double target);
+
+}  // namespace atrium::radiosity

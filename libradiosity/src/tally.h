@@ -1,0 +1,202 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "problem.h"
+
+namespace atrium::radiosity {
+
+/// Samples are drawn in a few independent replicates, each a low-discrepancy sequence of its own
+/// that later rounds continue: the spread of their means is an honest error of their common mean
+/// (Owen 1995), however the points of one sequence depend on each other.
+inline constexpr int kReplicates = 4;
+
+/// What was drawn for one side, before it is added to a Tally.
+template <int N>
+struct SideSums {
+  struct Group {
+    Spectrum<N> plain, body;
+    std::array<float, kReplicates> replicate{};  ///< sums of the lane mean
+  };
+  std::vector<Group> groups;
+  std::array<std::uint32_t, kReplicates> valid{};
+
+  explicit SideSums(std::size_t group_count) : groups(group_count) {}
+  void clear() {
+    groups.assign(groups.size(), Group{});
+    valid.fill(0);
+  }
+  void add(std::size_t group, int replicate, const Spectrum<N>& plain, const Spectrum<N>& body) {
+    Group& g = groups[group];
+    g.plain += plain;
+    g.body += body;
+    g.replicate[static_cast<std::size_t>(replicate)] += plain.mean();
+  }
+};
+
+/// Sums of samples by side and light group.
+template <int N>
+class Tally {
+ public:
+  Tally() = default;
+  Tally(std::size_t sides, std::size_t groups, bool body)
+      : sides_(sides),
+        groups_(groups),
+        plain_(sides * groups),
+        body_(body ? sides * groups : 0),
+        replicate_(sides * groups),
+        valid_(sides),
+        drawn_(sides, 0) {}
+
+  [[nodiscard]] std::size_t groups() const { return groups_; }
+  /// Samples drawn so far in each replicate, valid or not.
+  [[nodiscard]] std::uint32_t drawn(SideIndex i) const { return drawn_[i]; }
+  [[nodiscard]] std::uint32_t valid(SideIndex i) const {
+    std::uint32_t n = 0;
+    for (const std::uint32_t v : valid_[i]) n += v;
+    return n;
+  }
+
+  /// Different sides may be added to at the same time.
+  void add(SideIndex i, const SideSums<N>& sums, std::uint32_t drawn) {
+    drawn_[i] += drawn;
+    for (int r = 0; r < kReplicates; ++r)
+      valid_[i][static_cast<std::size_t>(r)] += sums.valid[static_cast<std::size_t>(r)];
+    for (std::size_t g = 0; g < groups_; ++g) {
+      const std::size_t at = g * sides_ + i;
+      plain_[at] += sums.groups[g].plain;
+      if (!body_.empty()) body_[at] += sums.groups[g].body;
+      for (std::size_t r = 0; r < kReplicates; ++r)
+        replicate_[at][r] += sums.groups[g].replicate[r];
+    }
+  }
+  /// Starts a side again, from the first sample on.
+  void forget(SideIndex i) {
+    drop_sums(i);
+    drawn_[i] = 0;
+  }
+  /// Drops what was added for a side; its next samples are new ones all the same.
+  void drop_sums(SideIndex i) {
+    valid_[i].fill(0);
+    for (std::size_t g = 0; g < groups_; ++g) {
+      plain_[g * sides_ + i] = {};
+      if (!body_.empty()) body_[g * sides_ + i] = {};
+      replicate_[g * sides_ + i].fill(0.0f);
+    }
+  }
+  /// Takes over what another tally knows of a side.
+  void copy(SideIndex i, const Tally& from, SideIndex j) {
+    drawn_[i] = from.drawn_[j];
+    valid_[i] = from.valid_[j];
+    for (std::size_t g = 0; g < groups_; ++g) {
+      plain_[g * sides_ + i] = from.plain_[g * from.sides_ + j];
+      if (!body_.empty()) body_[g * sides_ + i] = from.body_[g * from.sides_ + j];
+      replicate_[g * sides_ + i] = from.replicate_[g * from.sides_ + j];
+    }
+  }
+
+  [[nodiscard]] Spectrum<N> mean(SideIndex i, std::size_t group) const {
+    return per_sample(plain_[group * sides_ + i], i);
+  }
+  [[nodiscard]] Spectrum<N> mean_body(SideIndex i, std::size_t group) const {
+    return per_sample(body_[group * sides_ + i], i);
+  }
+  /// Variance of one group's mean (lane mean); 0 without two replicates.
+  [[nodiscard]] double variance(SideIndex i, std::size_t group) const {
+    std::array<double, kReplicates> sums{};
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      sums[r] = static_cast<double>(replicate_[group * sides_ + i][r]);
+    return variance_of_mean(sums, valid_[i]);
+  }
+  /// Variance of the sum of all groups.
+  [[nodiscard]] double variance(SideIndex i) const {
+    std::array<double, kReplicates> sums{};
+    for (std::size_t g = 0; g < groups_; ++g)
+      for (std::size_t r = 0; r < kReplicates; ++r)
+        sums[r] += static_cast<double>(replicate_[g * sides_ + i][r]);
+    return variance_of_mean(sums, valid_[i]);
+  }
+
+ private:
+  [[nodiscard]] Spectrum<N> per_sample(const Spectrum<N>& sum, SideIndex i) const {
+    const std::uint32_t n = valid(i);
+    return n > 0 ? sum * (1.0f / static_cast<float>(n)) : Spectrum<N>();
+  }
+  /// Of a ratio of sums over replicates (linearised).
+  static double variance_of_mean(const std::array<double, kReplicates>& sums,
+                                 const std::array<std::uint32_t, kReplicates>& counts) {
+    double total = 0.0;
+    double n = 0.0;
+    int used = 0;
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      total += sums[r];
+      n += counts[r];
+      used += counts[r] > 0 ? 1 : 0;
+    }
+    if (used < 2) return 0.0;
+    double squares = 0.0;
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      const double d = sums[r] - total / n * counts[r];
+      if (counts[r] > 0) squares += d * d;
+    }
+    return squares * used / ((used - 1.0) * n * n);
+  }
+
+  std::size_t sides_ = 0, groups_ = 0;
+  std::vector<Spectrum<N>> plain_, body_;
+  std::vector<std::array<float, kReplicates>> replicate_;
+  std::vector<std::array<std::uint32_t, kReplicates>> valid_;
+  std::vector<std::uint32_t> drawn_;
+};
+
+/// How many more samples each replicate of a side gets.
+struct Draw {
+  SideIndex side;
+  std::uint32_t more;
+};
+
+/// Draws samples: one(side, replicate, index, sums, counters) adds one sample and returns whether
+/// its point was valid. Sides are independent, so threads do not matter.
+/// \return  false if stopped early.
+template <int N, class One>
+bool draw_samples(const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
+                  scene::Counters& counters, One&& one) {
+  return work.run(
+      plan.size(), 128, counters, [&](std::size_t begin, std::size_t end, scene::Counters& c) {
+        SideSums<N> sums(tally.groups());
+        for (std::size_t k = begin; k < end; ++k) {
+          const auto [side, more] = plan[k];
+          sums.clear();
+          const std::uint32_t first = tally.drawn(side);
+          for (int r = 0; r < kReplicates; ++r)
+            for (std::uint32_t s = first; s < first + more; ++s)
+              if (one(side, r, s, sums, c)) ++sums.valid[static_cast<std::size_t>(r)];
+          tally.add(side, sums, more);
+        }
+      });
+}
+
+/// A sampler's seed in one replicate.
+[[nodiscard]] inline std::uint64_t replicate_seed(std::uint64_t seed, std::uint64_t purpose,
+                                                  int replicate) {
+  return seed ^ (purpose << 32) ^ (static_cast<std::uint64_t>(replicate + 1) << 56);
+}
+
+/// What is missing to `samples` of every side, in fours. Parts of a divided element need half as
+/// many at each level, for their errors count by their area.
+template <int N>
+[[nodiscard]] std::vector<Draw> top_up(const Problem<N>& problem, const Tally<N>& tally,
+                                       const std::vector<SideIndex>& sides, int samples) {
+  std::vector<Draw> plan;
+  plan.reserve(sides.size());
+  for (const SideIndex i : sides) {
+    const auto wanted = static_cast<std::uint32_t>(
+        (samples_at_level(samples, problem.level(i)) + kReplicates - 1) / kReplicates);
+    if (wanted > tally.drawn(i)) plan.push_back({i, wanted - tally.drawn(i)});
+  }
+  return plan;
+}
+
+}  // namespace atrium::radiosity

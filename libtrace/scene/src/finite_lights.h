@@ -1,0 +1,79 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "light_tree.h"
+#include "material/spectral_basis.h"
+#include "scene/light_sampler.h"
+
+namespace atrium::scene {
+
+/// Lights at a place: points, spots, luminaires, and the triangles that emit.
+template <int N>
+class FiniteLights {
+ public:
+  FiniteLights(const Scene& scene, const material::SpectralBasis& basis);
+
+  [[nodiscard]] bool empty() const { return tree_.empty(); }
+  /// As LightSampler::sample, without the choice of a group in the density.
+  [[nodiscard]] std::optional<LightSample<N>> sample(const Vec3f& p, const Vec3f& normal,
+                                                     float u_choice, const Vec2f& u) const;
+  /// Density [1/sr] of that for the emissive point that a ray from p hits.
+  [[nodiscard]] float pdf(const Vec3f& p, const Vec3f& normal, const SurfacePoint& hit,
+                          float distance) const;
+  [[nodiscard]] Spectrum<N> emitted(const SurfacePoint& point, const Vec3f& wo) const;
+
+  /// Flux of each light, and a ray of one of them that carries it.
+  [[nodiscard]] std::vector<Spectrum<N>> fluxes() const;
+  [[nodiscard]] EmissionSample<N> sample_emission(std::size_t light, const Vec2f& u_position,
+                                                  const Vec2f& u_direction) const;
+
+ private:
+  struct Positional {  // point, spot, profile
+    std::uint32_t index;
+    Vec3f position;
+    Eigen::Matrix3f to_local;  // rotation
+    Spectrum<N> intensity;
+  };
+  struct EmissiveTriangle {
+    ObjectId object;
+    std::uint32_t triangle;
+    float area;
+  };
+  struct Place {
+    SurfacePoint point;
+    Vec3f wi;
+    float distance, pdf;
+  };
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+
+  void collect_lights();
+  void collect_surfaces();
+  void build_tree();
+  [[nodiscard]] LightBounds bounds_of(const Positional& p) const;
+  [[nodiscard]] LightBounds bounds_of(const EmissiveTriangle& t) const;
+  [[nodiscard]] Spectrum<N> flux_of(const Positional& p) const;
+  [[nodiscard]] Spectrum<N> flux_of(const EmissiveTriangle& t) const;
+  [[nodiscard]] Spectrum<N> triangle_radiance(const EmissiveTriangle& t) const;
+  [[nodiscard]] bool two_sided(const EmissiveTriangle& t) const;
+  [[nodiscard]] Spectrum<N> intensity_towards(const Positional& p, const Vec3f& direction) const;
+  [[nodiscard]] Spectrum<N> radiance_at(const SurfacePoint& point) const;
+  [[nodiscard]] float emission_cosine(const EmissiveTriangle& t, const Vec3f& ng,
+                                      const Vec3f& wi) const;
+  [[nodiscard]] std::optional<Place> place_on(const EmissiveTriangle& t, const Vec3f& p,
+                                              const Vec2f& u) const;
+  [[nodiscard]] EmissionSample<N> emission_of(const Positional& light, const Vec2f& u) const;
+  [[nodiscard]] EmissionSample<N> emission_of(const EmissiveTriangle& t, const Vec2f& u_position,
+                                              const Vec2f& u_direction) const;
+
+  const Scene* scene_;
+  material::SpectralBasis basis_;
+  std::vector<Positional> positional_;
+  std::vector<EmissiveTriangle> triangles_;
+  std::vector<std::uint32_t> first_triangle_of_object_;  // into triangles_, or kNone
+  std::vector<Spectrum<N>> emission_of_material_;
+  LightTree tree_;  // positional_, then triangles_
+};
+
+}  // namespace atrium::scene
