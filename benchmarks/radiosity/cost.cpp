@@ -16,22 +16,33 @@ double total(const scene::SurfaceField& f, std::size_t i) {
   return at(f.irradiance.direct) + at(f.irradiance.caustic) + at(f.irradiance.indirect);
 }
 
-/// Deviation of one solution, from two of the same mesh. The scale is their mean; sides that take
-/// no part count nothing.
-ErrorMeasure spread(const scene::SurfaceField& a, const scene::SurfaceField& b) {
-  if (a.element_count() != b.element_count()) return {};
+/// Deviation of one solution, from two: the scale is their mean, and x1 - (x1 + x2) / 2 has half
+/// the variance of one.
+ErrorMeasure spread(const std::vector<double>& a, const std::vector<double>& b,
+                    const std::vector<double>& weights) {
+  std::vector<double> middle(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) middle[i] = 0.5 * (a[i] + b[i]);
+  ErrorMeasure m = measure_error(a, middle, weights);
+  m.rms *= std::sqrt(2.0);
+  m.absolute *= std::sqrt(2.0);
+  return m;
+}
+
+/// Over the element sides if the meshes are one, else over points.
+ErrorMeasure spread(const Workload& workload, const Judges& points, const scene::SurfaceField& a,
+                    const scene::SurfaceField& b) {
+  if (a.nodes != b.nodes || a.element_count() != b.element_count())
+    return spread(read_field(workload, a, points.receivers, Reading::Element),
+                  read_field(workload, b, points.receivers, Reading::Element),
+                  std::vector<double>(points.receivers.size(), 1.0));
   std::vector<double> first, second, weights;
   for (std::size_t i = 0; i < a.element_count() * 2; ++i) {
     if (a.valid[i] == 0 || b.valid[i] == 0) continue;
     first.push_back(total(a, i));
-    second.push_back(0.5 * (total(a, i) + total(b, i)));
+    second.push_back(total(b, i));
     weights.push_back(static_cast<double>(a.element_area[i / 2]));
   }
-  // x1 - (x1 + x2) / 2 has half the variance of one solution.
-  ErrorMeasure m = measure_error(first, second, weights);
-  m.rms *= std::sqrt(2.0);
-  m.absolute *= std::sqrt(2.0);
-  return m;
+  return spread(first, second, weights);
 }
 
 }  // namespace
@@ -59,8 +70,8 @@ CostRow solve_cost(const Workload& workload, const Judges& patches, const Judges
   if (variant.options.solver != radiosity::Solver::Rows) return row;
   radiosity::SolveOptions other = variant.options;
   other.seed = variant.options.seed + 1000;
-  const ErrorMeasure m =
-      spread(r.field, radiosity::solve(workload.query(), Workload::basis(), other).field);
+  const ErrorMeasure m = spread(workload, points, r.field,
+                                radiosity::solve(workload.query(), Workload::basis(), other).field);
   row.statistical = m.rms;
   row.statistical_absolute = m.absolute;
   return row;

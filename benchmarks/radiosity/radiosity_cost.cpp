@@ -28,6 +28,7 @@ struct Options {
   std::vector<std::string> scenes;
   std::vector<std::uint32_t> elements = {5000, 30000};
   std::vector<double> scales = {0.125, 0.5, 2.0};
+  std::vector<double> errors = {0.1, 0.05, 0.02, 0.01, 0.005};
   std::vector<double> shares = {0.5, 0.2, 0.05};
   std::vector<std::uint32_t> paths = {16, 64, 256, 1024};
   std::uint32_t shooting_elements = 1500;
@@ -82,6 +83,7 @@ class SceneRun {
 
   SceneCost all() {
     for (const std::uint32_t n : elements_) rows(n);
+    if (!options_.errors.empty()) to_errors();
     if (!workload_.specular()) shooting();
     paths();
     threads();
@@ -105,10 +107,13 @@ class SceneRun {
     return cost_.series.emplace_back(CostSeries{.name = name, .rows = {}});
   }
   void add(CostSeries& series, const CostRow& row) {
-    std::fprintf(stderr, "%s, %s, %s: %.3g rays, %.1f s CPU, error %.2f %%, statistical %.2f %%\n",
+    std::fprintf(stderr,
+                 "%s, %s, %s: %.3g rays, %.1f s CPU, error %.2f %% (best 99 %%: %.2f %%), "
+                 "statistical %.2f %%, estimate %.2f %%, %.0f MB, %s\n",
                  cost_.name.c_str(), series.name.c_str(), row.variant.c_str(),
                  static_cast<double>(row.rays), row.cpu, 100.0 * error_of(row, ErrorKind::Total),
-                 100.0 * row.statistical);
+                 100.0 * row.patches.most, 100.0 * row.statistical, 100.0 * row.estimate,
+                 row.memory, row.stopped_by.c_str());
     series.rows.push_back(row);
   }
 
@@ -120,6 +125,15 @@ class SceneRun {
       add(series, solve_cost(workload_, patches_, points_, v));
     }
     sides_ = series.rows.empty() ? 0 : series.rows.back().receivers;
+  }
+  /// Element size by the finest of the meshes above, then what the target asks for.
+  void to_errors() {
+    CostSeries& series = begin("rows by error, " + count_text(elements_.back()) + " elements");
+    for (const double error : options_.errors) {
+      Variant v = error_variant(error);
+      v.options.max_elements = elements_.back();
+      add(series, solve_cost(workload_, patches_, points_, v));
+    }
   }
   void shooting() {
     if (options_.shares.empty()) return;
@@ -289,6 +303,8 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--elements", o.elements, "about; one series each")->capture_default_str();
   app.add_option("--scales", o.scales, "rays of the solver, times the default")
+      ->capture_default_str();
+  app.add_option("--errors", o.errors, "targets of the solver's own estimate")
       ->capture_default_str();
   app.add_option("--shooting", o.shares, "unshot flux at which shooting ends")
       ->capture_default_str();

@@ -94,8 +94,8 @@ std::vector<Receiver> choose_points(const Workload& workload, std::size_t count,
 std::vector<Receiver> choose_patches(const Workload& workload, std::size_t count, double size,
                                      std::uint64_t seed) {
   constexpr std::uint32_t kLooks = 8;
-  const radiosity::Elements grid = radiosity::make_elements(
-      workload.scene(), {.element_size = size, .max_elements = 10000000, .normal_cone_deg = 10.0});
+  const radiosity::Elements grid =
+      radiosity::make_elements(workload.scene(), {.element_size = size, .max_elements = 10000000});
   std::vector<double> until;
   double total = 0.0;
   for (const float area : grid.layout.element_area)
@@ -106,8 +106,10 @@ std::vector<Receiver> choose_patches(const Workload& workload, std::size_t count
     const double x = static_cast<double>(sampler.next_1d()) * total;
     const auto it = std::min(std::upper_bound(until.begin(), until.end(), x), until.end() - 1);
     const auto e = static_cast<std::size_t>(it - until.begin());
-    const Receiver r(
-        {grid.pieces.begin() + grid.first_piece[e], grid.pieces.begin() + grid.first_piece[e + 1]});
+    std::vector<radiosity::ElementPiece> pieces;
+    for (std::size_t k = grid.first_piece[e]; k < grid.first_piece[e + 1]; ++k)
+      pieces.push_back(grid.pieces[k]);
+    const Receiver r(pieces);
     bool lit = true;
     for (std::uint32_t k = 0; k < kLooks && lit; ++k) {
       scene::Sampler look(seed ^ 0x100cU, i, k);
@@ -120,7 +122,7 @@ std::vector<Receiver> choose_patches(const Workload& workload, std::size_t count
 
 }  // namespace
 
-Receiver::Receiver(std::vector<radiosity::ElementPiece> pieces) {
+Receiver::Receiver(const std::vector<radiosity::ElementPiece>& pieces) {
   double total = 0.0;
   for (const radiosity::ElementPiece& piece : pieces)
     for (std::size_t k = 1; k + 1 < piece.corners.size(); ++k) {

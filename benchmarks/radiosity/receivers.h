@@ -16,7 +16,7 @@ class Receiver {
  public:
   explicit Receiver(const scene::SurfacePoint& point) : point_(point) {}
   /// \param pieces  convex parts of triangles, at least one of positive area.
-  explicit Receiver(std::vector<radiosity::ElementPiece> pieces);
+  explicit Receiver(const std::vector<radiosity::ElementPiece>& pieces);
 
   /// Uniform by area. \param u  in [0, 1)^2.
   [[nodiscard]] scene::SurfacePoint sample(const scene::Scene& scene, const Vec2f& u) const;

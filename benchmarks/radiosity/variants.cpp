@@ -1,6 +1,7 @@
 #include "variants.h"
 
 #include <cmath>
+#include <cstdio>
 
 namespace atrium::bench {
 namespace {
@@ -22,9 +23,19 @@ Variant rows_variant(double scale) {
   Variant v;
   v.options = with_more_rays({}, scale);
   v.options.tolerance = 1e-5;
+  v.options.max_level = 0;
   v.name = "rows " + std::to_string(v.options.row_rays) + "+" +
            std::to_string(v.options.gather_rays) + ", direct " +
            std::to_string(v.options.direct_samples);
+  return v;
+}
+
+Variant error_variant(double error) {
+  Variant v;
+  v.options.error = error;
+  char name[32];
+  std::snprintf(name, sizeof name, "error %g %%", 100.0 * error);
+  v.name = name;
   return v;
 }
 
@@ -39,6 +50,10 @@ std::vector<Variant> coverage_variants() {
   many_rows.options.row_rays = 1024;
   many_rows.name = "rows 1024+128";
   variants.push_back(many_rows);
+  for (const double error : {0.05, 0.02, 0.01}) {
+    variants.push_back(error_variant(error));
+    variants.back().options.max_level = 0;
+  }
   return variants;
 }
 

@@ -13,8 +13,11 @@ struct Variant {
   radiosity::SolveOptions options;
 };
 
-/// Rows with `scale` times the default rays of every kind.
+/// Rows with `scale` times the default rays of every kind, on the first mesh: all sides alike.
 [[nodiscard]] Variant rows_variant(double scale);
+
+/// Rows that go on until their own estimate is below `error`; mesh and rays follow the light.
+[[nodiscard]] Variant error_variant(double error);
 
 /// All numbers of rays multiplied.
 [[nodiscard]] radiosity::SolveOptions with_more_rays(radiosity::SolveOptions options,
