@@ -26,6 +26,7 @@ struct Options {
   std::vector<double> sizes = {1.0, 0.7, 0.5, 0.35, 0.25, 0.18};  ///< [m]
   double fixed_size = 0.3;
   std::vector<double> scales = {0.25, 0.5, 1, 2, 4, 8};
+  std::vector<double> errors = {0.1, 0.05, 0.02, 0.01, 0.005};
   std::size_t receivers = 1000;
   ReferenceOptions reference;
   std::string docs;
@@ -111,8 +112,10 @@ class SceneRun {
 
   /// One frozen mesh; the answer is that of many more rays on it.
   std::string against_rays() {
-    SolveOptions best = with_more_rays({}, options_.scales.back() * 16.0);
+    SolveOptions best;
+    best.error = 0.2 * options_.errors.back();
     best.element_size = options_.fixed_size;
+    best.max_level = 0;
     best.tolerance = 1e-6;
     best.seed = 4711;
     const SideTotals answer = totals(solve(best));
@@ -125,25 +128,39 @@ class SceneRun {
              .curves = {}};
     Table table({"solver", "effort", "rays", "RMS error, same mesh"});
     std::string slopes;
-    for (const Solver solver : {Solver::Rows, Solver::Shooting, Solver::Matrix}) {
-      plot::Curve curve{.name = name_of(solver), .x = {}, .y = {}};
-      for (const Variant& v : efforts(solver)) {
+    std::vector<std::pair<std::string, std::vector<Variant>>> series = {
+        {"rows by error", targets()}};
+    for (const Solver solver : {Solver::Rows, Solver::Shooting, Solver::Matrix})
+      series.emplace_back(name_of(solver), efforts(solver));
+    for (const auto& [name, variants] : series) {
+      plot::Curve curve{.name = name, .x = {}, .y = {}};
+      for (const Variant& v : variants) {
         const SolveResult r = solve(v.options);
         const SideTotals t = totals(r);
         const double error = measure_error(t.value, answer.value, answer.weight).rms;
         const double rays = static_cast<double>(r.counters.rays());
         curve.x.push_back(rays);
         curve.y.push_back(100.0 * error);
-        table.row({name_of(solver), v.name, short_count(rays), percent(error)});
+        table.row({name, v.name, short_count(rays), percent(error)});
       }
       if (curve.x.size() > 2)
-        slopes += std::string("Fitted slope of ") + name_of(solver) + ": " +
+        slopes += "Fitted slope of " + name + ": " +
                   format("%.2f", fitted_slope(curve.x, curve.y)) + ". ";
       rays_.curves.push_back(std::move(curve));
-      note(std::string("rays, ") + name_of(solver));
+      note("rays, " + name);
     }
     return "Against rays, elements of " + format("%g", options_.fixed_size) + " m:\n\n" +
            table.text() + "\n" + slopes + "\n\n";
+  }
+
+  std::vector<Variant> targets() const {
+    std::vector<Variant> list;
+    for (const double error : options_.errors) list.push_back(error_variant(error));
+    for (Variant& v : list) {
+      v.options.element_size = options_.fixed_size;
+      v.options.max_level = 0;
+    }
+    return list;
   }
 
   std::vector<Variant> efforts(Solver solver) const {
@@ -184,6 +201,7 @@ class SceneRun {
         SolveOptions o = with_more_rays({}, 16.0);
         o.solver = solver;
         o.element_size = size;
+        o.max_level = 0;
         o.tolerance = solver == Solver::Shooting ? 0.02 : 1e-6;
         SolveResult r;
         try {
@@ -256,6 +274,7 @@ class SceneRun {
     o.element_size =
         solver == Solver::Shooting ? std::max(0.6, options_.fixed_size) : options_.fixed_size;
     o.max_iterations = iterations;
+    o.max_level = 0;
     o.tolerance = solver == Solver::Shooting ? std::max(1e-3, tolerance) : tolerance;
     return o;
   }
@@ -272,8 +291,8 @@ const char* kIntroduction =
     "Made by `benchmarks/radiosity/radiosity_convergence` (see its head for the command). RMS "
     "error "
     "of total irradiance as in [radiosity-cost.md](radiosity-cost.md): *against rays* over all "
-    "element sides of one mesh, the answer being what the rows give on it with 16 times the most "
-    "rays in the table; *against element size* at random points against a path tracer, by the "
+    "element sides of one mesh, the answer being what the rows give on it for a fifth of the "
+    "smallest target; *against element size* at random points against a path tracer, by the "
     "value "
     "of the element and by interpolation; *against iterations* over the sides, against the "
     "solver's "
@@ -303,6 +322,7 @@ int main(int argc, char** argv) {
   app.add_option("--sizes", o.sizes, "of elements [m]")->capture_default_str();
   app.add_option("--size", o.fixed_size, "of the frozen mesh [m]")->capture_default_str();
   app.add_option("--scales", o.scales, "rays of rows, times the default")->capture_default_str();
+  app.add_option("--errors", o.errors, "targets of rows")->capture_default_str();
   app.add_option("--receivers", o.receivers, "points of the reference")->capture_default_str();
   app.add_option("--reference-noise", o.reference.noise, "relative")->capture_default_str();
   app.add_option("--reference-rays", reference_rays, "at most, about")->capture_default_str();

@@ -1,12 +1,15 @@
 #include "variants.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 namespace atrium::bench {
 namespace {
 
-int times(int rays, double factor) { return static_cast<int>(std::lround(rays * factor)); }
+int times(int rays, double factor) {
+  return rays == 0 ? 0 : std::max(1, static_cast<int>(std::lround(rays * factor)));
+}
 
 }  // namespace
 
