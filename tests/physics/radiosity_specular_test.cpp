@@ -30,7 +30,8 @@ material::Material perfect_mirror() {
 TEST(Mirror, RoomWithMirrorWallEqualsDoubledRoom) {
   const double rho = 0.6;
   const SolveOptions options{
-      .element_size = 0.5, .gather_rays = 512, .direct_samples = 256, .caustic_photons = 2000000};
+      .element_size = 0.5, .max_level = 0, .gather_rays = 512, .direct_samples = 256,
+      .caustic_photons = 2000000};
   SceneMaker half;
   const auto white = half.material(test::diffuse(rho));
   const auto mirror = half.material(perfect_mirror());
