@@ -103,9 +103,11 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   result.iterations = solution.iteration.iterations;
   result.error_estimate = solution.error_estimate;
   result.complete = work.stopped_by().empty();
-  result.stopped_by = !result.complete               ? work.stopped_by()
-                      : solution.iteration.converged ? "tolerance"
-                                                     : "iterations";
+  result.stopped_by = !result.complete                ? work.stopped_by()
+                      : !solution.iteration.converged ? "iterations"
+                      : options.error == 0.0          ? "tolerance"
+                      : solution.error_reached        ? "error"
+                                                      : "rounds";
   result.counters[Counter::Iterations] += static_cast<std::uint64_t>(result.iterations);
   result.counters[Counter::ElementSides] += problem.sides.active.size();
 }
