@@ -47,6 +47,7 @@ struct SolveSettings {
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
   std::uint64_t seed = 1;
+  int probes = 0;              ///< points of the certificate
   bool paper_weights = false;  ///< --mode paper
 };
 

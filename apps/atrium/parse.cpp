@@ -82,6 +82,10 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
+  app.add_option("--probes", o.probes,
+                 "points where path tracing checks the radiosity and states its error; 0: none")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
 }
 
 void add_render(CLI::App& app, RenderCommand& o, Texts& t) {

@@ -45,6 +45,8 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   const bool want_mesh = !std::all_of(c.outputs.begin(), c.outputs.end(), is_solution);
   RadiosityRun run = run_radiosity(session, loaded, c.solve, c.solve.time_limit, want_mesh);
 
+  if (run.summary.certificate) session.progress.note(describe(*run.summary.certificate));
+
   session.clock.enter("write");
   Statistics statistics;
   statistics.seed = c.solve.seed;

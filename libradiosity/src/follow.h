@@ -9,7 +9,9 @@ namespace atrium::radiosity {
 /// What a path does besides reaching diffuse surfaces.
 template <int N>
 struct PathEnd {
-  Spectrum<N> escaped;        ///< weight that left the scene
+  Spectrum<N> escaped;        ///< weight that left the scene,
+  Vec3f direction;            ///< the way it left
+  bool specular = false;      ///< and whether it had met more than straight passages before
   bool inside_solid = false;  ///< the first surface was the inner face of a closed opaque body
 };
 
@@ -42,25 +44,32 @@ class MediumStack {
   std::array<Spectrum<N>, 4> extinction_;
 };
 
+struct IgnoreSurface {
+  template <int N>
+  void operator()(const scene::SurfacePoint&, const Vec3f&, const Spectrum<N>&, bool) const {}
+};
+
 /// Follows light from a diffuse surface (or from a light, Transport::Flux) through panes, mirrors,
 /// solids and lobes. At every surface that scatters diffusely on_diffuse(interaction, local wo,
 /// weight, specular) takes the whole weight; where the surface also has a specular part the path
 /// goes on with that, chosen by sampling, with Russian roulette for weak paths.
 /// \param specular  set once the path met more than straight passages through panes.
-template <int N, class OnDiffuse>
+/// \param on_surface  (point, world wo, weight, specular) at every surface, before the others.
+template <int N, class OnDiffuse, class OnSurface = IgnoreSurface>
 PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
                   scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
-                  scene::Counters& counters, OnDiffuse&& on_diffuse) {
+                  scene::Counters& counters, OnDiffuse&& on_diffuse,
+                  OnSurface&& on_surface = {}) {
   constexpr int kMaxDepth = 256;  // only total reflection without loss gets near
   const scene::Shading<N>& shading = problem.shading;
   PathEnd<N> end;
   MediumStack<N> media;
-  bool specular = false;
   for (int depth = 0; depth < kMaxDepth; ++depth) {
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
       end.escaped = weight;
+      end.direction = ray.direction;
       return end;
     }
     if (!media.empty()) weight *= exp_minus(media.extinction(), distance);
@@ -72,7 +81,8 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
       return end;
     }
     const Vec3f wo = at.to_local(wo_world);
-    if (at.bsdf.has(material::kDiffuseEvents)) on_diffuse(at, wo, weight, specular);
+    on_surface(*hit, wo_world, weight, end.specular);
+    if (at.bsdf.has(material::kDiffuseEvents)) on_diffuse(at, wo, weight, end.specular);
     if (!at.bsdf.has(material::kSpecularEvents)) return end;
 
     const Vec2f choice = sampler.next_2d();
@@ -83,7 +93,7 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
     const float survival = std::min(1.0f, 4.0f * weight.max());
     if (!(choice.y() < survival)) return end;
     weight *= 1.0f / survival;
-    if (s->event != material::kPaneStraight) specular = true;
+    if (s->event != material::kPaneStraight) end.specular = true;
 
     const Vec3f direction = at.to_world(s->wi);
     // Shading normals can send a reflection through the surface or a refraction back: no such path.
