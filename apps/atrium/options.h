@@ -47,6 +47,8 @@ struct SolveSettings {
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
   std::uint64_t seed = 1;
+  double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
+  int probes = 0;              ///< points of the certificate
   bool paper_weights = false;  ///< --mode paper
 };
 

@@ -79,6 +79,10 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
+  app.add_option("--probes", o.probes,
+                 "points where path tracing checks the radiosity and states its error; 0: none")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
 }
 
 void add_mode(CLI::App& app, Texts& t) {
@@ -195,6 +199,8 @@ void finish(SolveSettings& o, const Texts& t) {
   o.solver = choose<SolverChoice>(t.solver, {{"rows", SolverChoice::Rows},
                                              {"shooting", SolverChoice::Shooting},
                                              {"matrix", SolverChoice::Matrix}});
+  if (o.error > 0.0 && o.solver != SolverChoice::Rows)
+    throw Error("--error: only solver 'rows' works towards an error");
 }
 
 void finish(SceneOptions& o, const Texts& t) {
@@ -374,6 +380,11 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     add_solve(sub, solve.solve, solve_texts);
+    sub.add_option("--error", solve.solve.error,
+                   "go on until the RMS of irradiance is below this share of it (0.02: 2 %); 0: "
+                   "the effort of --quality. Solver rows only")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
     add_mode(sub, solve_texts);
     add_common(sub, solve.common);
   }

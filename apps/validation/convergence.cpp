@@ -73,6 +73,7 @@ ErrorCurve rows_against_rays() {
   static constexpr int kMost = 512;
   const auto solved = [](int rays, std::uint64_t seed) {
     const Solution s(room(0.6), {.element_size = 0.5,
+                                 .max_level = 0,
                                  .row_rays = std::min(rays / 2, kMost),
                                  .gather_rays = rays - std::min(rays / 2, kMost),
                                  .direct_samples = 1024,

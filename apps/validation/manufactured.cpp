@@ -126,8 +126,9 @@ Deviations deviations(const scene::Model& model, const std::vector<Comparison>& 
   as_is.pane_detection = false;
   as_is.repair = false;
   const Solution s(scene::build_scene(model, as_is), {.element_size = 1.0 / cells,
+                                                      .max_level = 0,
                                                       .row_rays = samples / 8,
-                                                      .gather_rays = samples / 4,
+                                                      .gather_rays = samples,
                                                       .direct_samples = samples,
                                                       .seed = seed});
   const scene::SurfaceField& field = s.result().field;

@@ -101,10 +101,7 @@ class SideProperties {
     const bool colours = !shading_.scene().meshes[object.mesh.value].colors.empty();
     const int count = any_texture(material) || colours ? 16 : 1;
     for (const Side side : {Side::Front, Side::Back}) {
-      if (side == Side::Back &&
-          (sides.closed_opaque[piece.object.value] != 0 || material.source->one_sided))
-        continue;
-      average(sides, element, side, count);
+      if (is_outside(shading_, sides, piece.object, side)) average(sides, element, side, count);
     }
   }
 

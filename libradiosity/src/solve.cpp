@@ -1,6 +1,7 @@
 #include "radiosity/solve.h"
 
 #include "adapt_mesh.h"
+#include "certificate.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -102,6 +103,10 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   result.residual = solution.iteration.residual;
   result.iterations = solution.iteration.iterations;
   result.error_estimate = solution.error_estimate;
+  if (options.probes > 0)
+    result.certificate =
+        make_certificate(problem, result.field, std::hypot(result.error_estimate, result.mesh_error),
+                         work, result.counters);
   result.complete = work.stopped_by().empty();
   result.stopped_by = !result.complete                ? work.stopped_by()
                       : !solution.iteration.converged ? "iterations"
