@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "follow.h"
 #include "hot_patches.h"
 #include "problem.h"
 
@@ -44,7 +43,6 @@ class ProbeTracer {
  private:
   const Problem<N>& problem_;
   const scene::SurfaceField& field_;
-  Surfaces<N> surfaces_;
   HotPatches<N> hot_;
   std::vector<std::string> not_sampled_;
 };
