@@ -83,6 +83,7 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.emitted = r.flux.emitted;
   s.absorbed = r.flux.absorbed;
   s.escaped = r.flux.escaped;
+  s.in_medium = r.flux.in_medium;
   s.flux_error = r.flux.standard_error;
   s.counters = r.counters;
   return s;

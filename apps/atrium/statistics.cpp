@@ -151,6 +151,7 @@ void add_solve(JsonWriter& json, const Statistics& s) {
     json.member("emitted", s.solve->emitted);
     json.member("absorbed", s.solve->absorbed);
     json.member("escaped", s.solve->escaped);
+    json.member("in_medium", s.solve->in_medium);
     json.member("standard_error", s.solve->flux_error);
     json.end();
   }

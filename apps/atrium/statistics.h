@@ -34,7 +34,7 @@ struct SolveSummary {
   std::optional<ProbeSummary> certificate;
   bool complete = true;
   std::string stopped_by;
-  double emitted = 0.0, absorbed = 0.0, escaped = 0.0, flux_error = 0.0;
+  double emitted = 0.0, absorbed = 0.0, escaped = 0.0, in_medium = 0.0, flux_error = 0.0;
   scene::Counters counters;
 };
 

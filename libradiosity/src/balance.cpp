@@ -24,7 +24,8 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
                          const Rows<N>& rows) {
   FluxBalance f{.emitted = static_cast<double>(problem.shading.lights().flux().mean()),
                 .absorbed = photons.absorbed,
-                .escaped = photons.escaped};
+                .escaped = photons.escaped,
+                .in_medium = photons.in_medium};
   double variance = photons.variance;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (rows.rays[k] == 0) continue;
@@ -36,9 +37,11 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
         leaving(problem.sides, i, total_exchange(problem, s, i), total_exchange(problem, s, i ^ 1U))
             .mean());
     const double escaped = static_cast<double>(rows.escaped[k]) / rays;
+    const double in_medium = static_cast<double>(rows.in_medium[k]) / rays;
     f.escaped += area * b * escaped;
-    f.absorbed +=
-        area * (absorbed_per_area(problem, s, i) + b * (1.0 - row_sum(rows, k) / rays - escaped));
+    f.in_medium += area * b * in_medium;
+    f.absorbed += area * (absorbed_per_area(problem, s, i) +
+                          b * (1.0 - row_sum(rows, k) / rays - escaped - in_medium));
     variance +=
         area * area *
         static_cast<double>(s.direct.variance[i] + s.caustic.variance[i] + s.indirect.variance[i]);
@@ -49,6 +52,9 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
 
 template <int N>
 void require_diffuse(const Problem<N>& problem, const char* solver) {
+  if (problem.shading.has_medium())
+    throw Error(std::string("radiosity: solver '") + solver +
+                "' knows no air that absorbs (medium); use solver 'rows'");
   if (problem.specular)
     throw Error(std::string("radiosity: solver '") + solver +
                 "' is for diffuse surfaces only and this scene has mirrors, glass or glossy "

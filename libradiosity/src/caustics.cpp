@@ -19,7 +19,7 @@ struct Deposit {
 template <int N>
 struct Batch {
   std::vector<Deposit<N>> deposits;
-  double escaped = 0.0, absorbed = 0.0, squares = 0.0;
+  double escaped = 0.0, in_medium = 0.0, absorbed = 0.0, squares = 0.0;
 };
 
 template <int N>
@@ -34,20 +34,17 @@ class PhotonTracer {
     const auto e = problem_.shading.lights().sample_emission(choice, position, sampler.next_2d());
     if (!e) return;
     double left = static_cast<double>(e->weight.mean());
-    const PathEnd<N> end =
-        follow<N>(problem_, {e->origin, e->direction}, e->weight, sampler,
-                  material::Transport::Flux, Counter::RaysPhoton, counters,
-                  [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& flux,
-                      bool specular) {
-                    const SideIndex i = problem_.side_at(at.point, at.side);
-                    if (i == kNoSide) return;  // the inner face of a solid: lost
-                    left -= static_cast<double>(flux.mean());
-                    if (!specular) return;
-                    batch.deposits.push_back({i, 0, flux, flux * at.bsdf.body_weight(wo.z())});
-                  });
+    const PathEnd<N> end = follow<N>(
+        problem_, {e->origin, e->direction}, e->weight, sampler, material::Transport::Flux,
+        Counter::RaysPhoton, counters, [&](const Landing<N>& at, const Spectrum<N>& flux) {
+          left -= static_cast<double>(flux.mean());
+          if (at.specular) batch.deposits.push_back({at.side, 0, flux, flux * at.body_weight()});
+        });
     const double escaped = static_cast<double>(end.escaped.mean());
     batch.escaped += escaped;
-    batch.absorbed += left - escaped;
+    const double in_medium = static_cast<double>(end.in_medium.mean());
+    batch.in_medium += in_medium;
+    batch.absorbed += left - escaped - in_medium;
     batch.squares += left * left;
   }
 
@@ -87,7 +84,7 @@ Photons<N> trace_photons(const Problem<N>& problem, Work& work, Counters& counte
 template <int N>
 Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,
                          Counters& counters) {
-  constexpr std::size_t kGrain = 4096;
+  constexpr std::size_t kGrain = 1024;
   Photons<N> result;
   result.caustic.assign(problem.group_count(),
                         Estimate<N>(problem.side_count(), problem.sides.any_coupled));
@@ -113,13 +110,14 @@ Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& w
   for (const Batch<N>& batch : batches) {
     add_deposits(problem, batch, n, arrived, result);
     result.escaped += batch.escaped / n;
+    result.in_medium += batch.in_medium / n;
     result.absorbed += batch.absorbed / n;
     squares += batch.squares / n;
   }
   if (problem.specular)
     for (std::size_t g = 0; g < result.caustic.size(); ++g)
       smooth_photons(problem, arrived[g], result.caustic[g]);
-  const double mean = result.escaped + result.absorbed;
+  const double mean = result.escaped + result.in_medium + result.absorbed;
   result.variance = std::max(0.0, squares - mean * mean) / n;
   return result;
 }

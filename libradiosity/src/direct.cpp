@@ -58,7 +58,7 @@ bool sample_direct(const Problem<N>& problem, DirectLights which,
                    Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
   const SideLight<N> light(problem, which);
-  return draw_samples(plan, tally, work, counters,
+  return draw_one_by_one(plan, tally, work, counters,
                       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                           Counters& c) {
                         return light.measure(i, replicate, index, sums, c,

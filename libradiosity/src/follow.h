@@ -9,9 +9,8 @@ namespace atrium::radiosity {
 /// What a path does besides reaching diffuse surfaces.
 template <int N>
 struct PathEnd {
-  Spectrum<N> escaped;        ///< weight that left the scene,
-  Vec3f direction;            ///< the way it left
-  bool specular = false;      ///< and whether it had met more than straight passages before
+  Spectrum<N> escaped;        ///< weight that left the scene
+  Spectrum<N> in_medium;      ///< weight that the air took
   bool inside_solid = false;  ///< the first surface was the inner face of a closed opaque body
 };
 
@@ -44,45 +43,116 @@ class MediumStack {
   std::array<Spectrum<N>, 4> extinction_;
 };
 
-struct IgnoreSurface {
-  template <int N>
-  void operator()(const scene::SurfacePoint&, const Vec3f&, const Spectrum<N>&, bool) const {}
+/// Where light meets a surface that scatters it diffusely.
+template <int N>
+struct Landing {
+  SideIndex side;  ///< an active one
+  Vec3f position;
+  Vec3f ng;               ///< geometric normal on that side, any length
+  bool specular = false;  ///< the path met more than straight passages through panes
+  const scene::Interaction<N>* shaded = nullptr;  ///< null: what Sides says is all there is
+  Vec3f wo = Vec3f::Zero();                       ///< local to `shaded`
+
+  /// Radiosity towards the path per exchange irradiance of this side and the other one: by the
+  /// reflectance of the very point (textures).
+  [[nodiscard]] Spectrum<N> leaving(const Sides<N>& sides, const Spectrum<N>& own,
+                                    const Spectrum<N>& other) const {
+    if (shaded == nullptr || shaded->bsdf.coupled())
+      return sides.reflectance[side] * own + sides.transmittance[side] * other;
+    return shaded->bsdf.diffuse_reflectance(wo) * own +
+           shaded->bsdf.diffuse_transmittance() * other;
+  }
+  [[nodiscard]] Spectrum<N> body_weight() const {
+    return shaded == nullptr ? Spectrum<N>::one() : shaded->bsdf.body_weight(wo.z());
+  }
 };
 
+[[nodiscard]] inline bool inside_solid(const std::vector<std::uint8_t>& closed_opaque,
+                                       const scene::Hit& hit, bool front) {
+  return !front && closed_opaque[hit.object.value] != 0;
+}
+
+/// Takes off what the air absorbs, of which it lets `transmittance` pass.
+template <int N>
+void pass_medium(const Spectrum<N>& transmittance, Spectrum<N>& weight, PathEnd<N>& end) {
+  end.in_medium += weight * (Spectrum<N>::one() - transmittance);
+  weight *= transmittance;
+}
+
+/// A path that meets nothing any more.
+template <int N>
+void escape(const Problem<N>& problem, const scene::Ray& ray, Spectrum<N> weight, PathEnd<N>& end) {
+  if (problem.shading.has_medium())
+    pass_medium(problem.shading.through_medium(ray, ray.tmax), weight, end);
+  end.escaped = weight;
+}
+
+/// The end of a path on an object of Sides::plain. \param first  it is the path's first surface.
+template <int N, class OnDiffuse>
+void land(const Problem<N>& problem, const scene::Ray& ray, const scene::Hit& hit,
+          const Spectrum<N>& weight, bool first, PathEnd<N>& end, OnDiffuse&& on_diffuse,
+          bool specular = false) {
+  const bool front = ray.direction.dot(hit.ng) <= 0.0f;
+  if (first && inside_solid(problem.sides.closed_opaque, hit, front)) {
+    end.inside_solid = true;
+    return;
+  }
+  const Vec3f position = ray.origin + hit.t * ray.direction;
+  const SideIndex side = problem.side_at(hit.object, hit.triangle, position,
+                                         front ? scene::Side::Front : scene::Side::Back);
+  if (side != kNoSide)
+    on_diffuse(Landing<N>{.side = side,
+                          .position = position,
+                          .ng = front ? hit.ng : Vec3f(-hit.ng),
+                          .specular = specular},
+               weight);
+}
+
 /// Follows light from a diffuse surface (or from a light, Transport::Flux) through panes, mirrors,
-/// solids and lobes. At every surface that scatters diffusely on_diffuse(interaction, local wo,
-/// weight, specular) takes the whole weight; where the surface also has a specular part the path
-/// goes on with that, chosen by sampling, with Russian roulette for weak paths.
-/// \param specular  set once the path met more than straight passages through panes.
-/// \param on_surface  (point, world wo, weight, specular) at every surface, before the others.
-template <int N, class OnDiffuse, class OnSurface = IgnoreSurface>
-PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
-                  scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
-                  scene::Counters& counters, OnDiffuse&& on_diffuse,
-                  OnSurface&& on_surface = {}) {
+/// solids and lobes. At every active side that it meets on_diffuse(landing, weight) takes the whole
+/// weight; where the surface also has a specular part the path goes on with that, chosen by
+/// sampling, with Russian roulette for weak paths.
+/// \param hit  the first surface on the ray.
+template <int N, class OnDiffuse>
+PathEnd<N> follow_from(const Problem<N>& problem, scene::Ray ray, scene::Hit hit,
+                       Spectrum<N> weight, scene::Sampler& sampler, material::Transport transport,
+                       scene::Counter kind, scene::Counters& counters, OnDiffuse&& on_diffuse) {
   constexpr int kMaxDepth = 256;  // only total reflection without loss gets near
   const scene::Shading<N>& shading = problem.shading;
   PathEnd<N> end;
   MediumStack<N> media;
+  bool specular = false;
   for (int depth = 0; depth < kMaxDepth; ++depth) {
-    float distance = 0.0f;
-    const auto hit = shading.closest(ray, counters, kind, &distance);
-    if (!hit) {
-      end.escaped = weight;
-      end.direction = ray.direction;
+    if (depth > 0) {
+      const auto next = shading.closest_hit(ray, counters, kind);
+      if (!next) {
+        escape(problem, ray, weight, end);
+        return end;
+      }
+      hit = *next;
+    }
+    if (!media.empty())
+      weight *= exp_minus(media.extinction(), hit.t);
+    else if (shading.has_medium())
+      pass_medium(shading.through_medium(ray, hit.t), weight, end);
+    if (problem.sides.plain[hit.object.value] != 0) {
+      land(problem, ray, hit, weight, depth == 0, end, on_diffuse, specular);
       return end;
     }
-    if (!media.empty()) weight *= exp_minus(media.extinction(), distance);
     const Vec3f wo_world = -ray.direction;
-    const scene::Interaction<N> at = shading.interact(*hit, wo_world);
-    if (depth == 0 && at.side == scene::Side::Back &&
-        problem.sides.closed_opaque[hit->object.value] != 0) {
+    const scene::SurfacePoint point = scene::surface_point(shading.scene(), hit);
+    const scene::Interaction<N> at = shading.interact(point, wo_world);
+    const bool front = at.side == scene::Side::Front;
+    if (depth == 0 && inside_solid(problem.sides.closed_opaque, hit, front)) {
       end.inside_solid = true;
       return end;
     }
     const Vec3f wo = at.to_local(wo_world);
-    on_surface(*hit, wo_world, weight, end.specular);
-    if (at.bsdf.has(material::kDiffuseEvents)) on_diffuse(at, wo, weight, end.specular);
+    if (at.bsdf.has(material::kDiffuseEvents)) {
+      const SideIndex side = problem.side_at(hit.object, hit.triangle, point.position, at.side);
+      if (side != kNoSide)
+        on_diffuse(Landing<N>{side, point.position, at.ng, specular, &at, wo}, weight);
+    }
     if (!at.bsdf.has(material::kSpecularEvents)) return end;
 
     const Vec2f choice = sampler.next_2d();
@@ -93,20 +163,34 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
     const float survival = std::min(1.0f, 4.0f * weight.max());
     if (!(choice.y() < survival)) return end;
     weight *= 1.0f / survival;
-    if (s->event != material::kPaneStraight) end.specular = true;
+    if (s->event != material::kPaneStraight) specular = true;
 
     const Vec3f direction = at.to_world(s->wi);
     // Shading normals can send a reflection through the surface or a refraction back: no such path.
     if ((direction.dot(at.ng) > 0.0f) != (s->wi.z() > 0.0f)) return end;
     if (s->event == material::kRefraction || s->event == material::kLobeTransmission) {
-      if (at.side == scene::Side::Front)
-        media.enter(hit->material, shading.material(hit->material).extinction);
+      if (front)
+        media.enter(point.material, shading.material(point.material).extinction);
       else
-        media.leave(hit->material);
+        media.leave(point.material);
     }
-    ray = {scene::offset_origin(*hit, direction), direction};
+    ray = {scene::offset_origin(point, direction), direction};
   }
   return end;
+}
+
+/// follow_from() with the first surface to be found.
+template <int N, class OnDiffuse>
+PathEnd<N> follow(const Problem<N>& problem, const scene::Ray& ray, const Spectrum<N>& weight,
+                  scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
+                  scene::Counters& counters, OnDiffuse&& on_diffuse) {
+  const auto hit = problem.shading.closest_hit(ray, counters, kind);
+  if (!hit) {
+    PathEnd<N> end;
+    escape(problem, ray, weight, end);
+    return end;
+  }
+  return follow_from<N>(problem, ray, *hit, weight, sampler, transport, kind, counters, on_diffuse);
 }
 
 }  // namespace atrium::radiosity

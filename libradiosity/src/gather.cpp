@@ -1,4 +1,3 @@
-#include "follow.h"
 #include "hemisphere.h"
 #include "passes.h"
 #include "segment.h"
@@ -16,39 +15,36 @@ class Gatherer {
            const HotPatches<N>& hot)
       : problem_(problem), field_(field), hot_(hot) {}
 
-  bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
-              Counters& counters) const {
-    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x6a74e5U, replicate),
-                           problem_.stream(i), index);
-    const HemisphereRay<N> start(problem_, i, sampler);
-    const PathEnd<N> end = follow<N>(
-        problem_, start.ray, Spectrum<N>::one(), sampler, material::Transport::Radiance,
-        Counter::RaysRow, counters,
-        [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight,
-            bool specular) {
-          const SideIndex j = problem_.side_at(at.point, at.side);
-          if (j == kNoSide) return;
-          const float share =
-              specular ? 1.0f : share_of_chance(hot_, start, at.point.position, at.ng, j);
-          for (std::size_t g = 0; g < field_.size(); ++g) {
-            const Spectrum<N> arriving = weight * radiosity_at(at, wo, j, g, share);
-            if (!arriving.is_zero())
-              sums.add(g, replicate, arriving, arriving * start.body_weight);
-          }
-        });
-    return !end.inside_solid;
+  /// \return  how many of the rays started outside closed bodies.
+  std::uint32_t sample(SideIndex i, int replicate, std::uint32_t first, std::uint32_t count,
+                       SideSums<N>& sums, Counters& counters) const {
+    constexpr std::uint32_t kMost = HemisphereRays<N>::kMost;
+    std::uint32_t valid = 0;
+    for (std::uint32_t done = 0; done < count; done += kMost) {
+      const HemisphereRays<N> rays(
+          problem_, i, replicate_seed(problem_.options.seed, 0x6a74e5U, replicate),
+          problem_.stream(i), first + done, static_cast<int>(std::min(kMost, count - done)));
+      rays.follow_all(
+          counters,
+          [&](std::size_t k, const Landing<N>& at, const Spectrum<N>& weight) {
+            const float share = share_of_chance(hot_, rays, k, at);
+            for (std::size_t g = 0; g < field_.size(); ++g) {
+              const Spectrum<N> arriving = weight * radiosity_at(at, g, share);
+              if (!arriving.is_zero())
+                sums.add(g, replicate, arriving, arriving * rays.body_weight(k));
+            }
+          },
+          [&](std::size_t, const PathEnd<N>& end) { valid += end.inside_solid ? 0 : 1; });
+    }
+    return valid;
   }
 
  private:
-  /// Radiosity at a point of side j: reflectance of the very point (textures) times irradiance of
-  /// its element. Of the light that hot patches got first, only `share`.
-  Spectrum<N> radiosity_at(const scene::Interaction<N>& at, const Vec3f& wo, SideIndex j,
-                           std::size_t group, float share) const {
-    Spectrum<N> own = field_[group][j];
-    const Spectrum<N>& other = field_[group][j ^ 1U];
-    if (share != 1.0f) own -= (1.0f - share) * hot_.source(j, group);
-    if (at.bsdf.coupled()) return leaving(problem_.sides, j, own, other);
-    return at.bsdf.diffuse_reflectance(wo) * own + at.bsdf.diffuse_transmittance() * other;
+  /// Of the light that hot patches got first, only `share`.
+  Spectrum<N> radiosity_at(const Landing<N>& at, std::size_t group, float share) const {
+    Spectrum<N> own = field_[group][at.side];
+    if (share != 1.0f) own -= (1.0f - share) * hot_.source(at.side, group);
+    return at.leaving(problem_.sides, own, field_[group][at.side ^ 1U]);
   }
 
   const Problem<N>& problem_;
@@ -113,8 +109,10 @@ bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& 
                    Work& work, Counters& counters) {
   const Gatherer<N> gatherer(problem, field, hot);
   return draw_samples(plan, tally, work, counters,
-                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
-                          Counters& c) { return gatherer.sample(i, replicate, index, sums, c); });
+                      [&](SideIndex i, int replicate, std::uint32_t first, std::uint32_t count,
+                          SideSums<N>& sums, Counters& c) {
+                        return gatherer.sample(i, replicate, first, count, sums, c);
+                      });
 }
 
 template <int N>
@@ -123,7 +121,7 @@ bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
                 Tally<N>& tally, Work& work, Counters& counters) {
   if (hot.empty()) return true;
   const HotSampler<N> sampler(problem, hot);
-  return draw_samples(plan, tally, work, counters,
+  return draw_one_by_one(plan, tally, work, counters,
                       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                           Counters& c) {
                         return sampler.sample(i, replicate, index, sums, c, mixed[i] != 0);

@@ -127,49 +127,97 @@ class Walk {
         v.at.side);
   }
 
-  /// Emission that a ray from v met, with its share if a light sample could have found it.
-  void add_emission(const Vertex& v, const Spectrum<N>& weight, bool specular, float cosine,
-                    float light_pdf, const Spectrum<N>& radiance) {
-    if (specular && caustics_ != nullptr) return;
-    const float chance = cosine * kInversePi;
-    const float share = specular ? 1.0f : v.share * chance / (chance + light_pdf);
-    sum_ += weight * radiance * (share * std::numbers::pi_v<float>);
+  /// A ray on its way from a vertex.
+  struct Flight {
+    scene::Ray ray;
+    Spectrum<N> weight;
+    float cosine;           ///< at the vertex
+    bool specular = false;  ///< it met more than straight passages through panes
+    MediumStack<N> media;
+  };
+
+  /// Emission that a ray from v met. \param light_pdf  with which a light sample finds it from v.
+  void add_emission(const Vertex& v, const Flight& f, float light_pdf,
+                    const Spectrum<N>& radiance) {
+    if (f.specular && caustics_ != nullptr) return;
+    const float chance = f.cosine * kInversePi;
+    const float share = f.specular ? 1.0f : v.share * chance / (chance + light_pdf);
+    sum_ += f.weight * radiance * (share * std::numbers::pi_v<float>);
+  }
+  void add_sky(const Vertex& v, const Flight& f) {
+    const Spectrum<N> radiance = shading_.lights().environment(f.ray.direction);
+    if (radiance.is_zero()) return;
+    const float pdf = f.specular ? 0.0f
+                                 : shading_.lights().pdf_environment(v.at.point.position, v.at.ng,
+                                                                     f.ray.direction);
+    add_emission(v, f, pdf, radiance);
+  }
+  void add_lamp(const Vertex& v, const Flight& f, const SurfacePoint& hit) {
+    const Spectrum<N> radiance = shading_.lights().emitted(hit, -f.ray.direction);
+    if (radiance.is_zero()) return;
+    const Vec3f& from = v.at.point.position;
+    const float pdf =
+        f.specular ? 0.0f : shading_.lights().pdf(from, v.at.ng, hit, (hit.position - from).norm());
+    add_emission(v, f, pdf, radiance);
   }
 
   /// Sends a ray and moves to one of the diffuse surfaces it meets. False: the walk is over.
+  /// On purpose not follow(): an error there must not be an error of what judges it.
   bool advance(Vertex& v) {
-    const Vec3f from = v.at.point.position;
-    const Vec3f normal = v.at.ng;
+    constexpr int kMaxDepth = 256;
     const Vec3f local = sample_cosine_hemisphere(sampler_.next_2d());
-    const Vec3f direction = Frame(normal).to_world(local).normalized();
-    const float cosine = local.z();
-    const Spectrum<N> start = v.weight * v.body_weight(cosine);
+    const Vec3f start = Frame(v.at.ng).to_world(local).normalized();
+    Flight f{{scene::offset_origin(v.at.point, start), start},
+             v.weight * v.body_weight(local.z()),
+             local.z()};
     met_.clear();
-    const PathEnd<N> end = follow<N>(
-        problem_, {scene::offset_origin(v.at.point, direction), direction}, start, sampler_,
-        material::Transport::Radiance, Counter::RaysProbe, counters_,
-        [&](const scene::Interaction<N>& at, const Vec3f& wo, const Spectrum<N>& weight,
-            bool specular) {
-          if (!is_outside(shading_, problem_.sides, at.point.object, at.side)) return;
-          met_.push_back({at, weight * at.bsdf.diffuse_reflectance(wo),
-                          weight * at.bsdf.diffuse_transmittance(), specular});
-        },
-        [&](const SurfacePoint& hit, const Vec3f& wo, const Spectrum<N>& weight, bool specular) {
-          const Spectrum<N> radiance = shading_.lights().emitted(hit, wo);
-          if (radiance.is_zero()) return;
-          const float pdf =
-              specular ? 0.0f
-                       : shading_.lights().pdf(from, normal, hit, (hit.position - from).norm());
-          add_emission(v, weight, specular, cosine, pdf, radiance);
-        });
-    if (!end.escaped.is_zero()) {
-      const Spectrum<N> radiance = shading_.lights().environment(end.direction);
-      const float pdf = end.specular || radiance.is_zero()
-                            ? 0.0f
-                            : shading_.lights().pdf_environment(from, normal, end.direction);
-      add_emission(v, end.escaped, end.specular, cosine, pdf, radiance);
+    for (int depth = 0; depth < kMaxDepth; ++depth) {
+      float distance = 0.0f;
+      const auto hit = shading_.closest(f.ray, counters_, Counter::RaysProbe, &distance);
+      if (!hit) {
+        f.weight *= shading_.through_medium(f.ray, f.ray.tmax);
+        add_sky(v, f);
+        break;
+      }
+      f.weight *= f.media.empty() ? shading_.through_medium(f.ray, distance)
+                                  : exp_minus(f.media.extinction(), distance);
+      const scene::Interaction<N> at = shading_.interact(*hit, -f.ray.direction);
+      if (depth == 0 && at.side == Side::Back &&
+          problem_.sides.closed_opaque[hit->object.value] != 0)
+        return false;
+      add_lamp(v, f, *hit);
+      const Vec3f wo = at.to_local(-f.ray.direction);
+      if (at.bsdf.has(material::kDiffuseEvents) &&
+          is_outside(shading_, problem_.sides, hit->object, at.side))
+        met_.push_back({at, f.weight * at.bsdf.diffuse_reflectance(wo),
+                        f.weight * at.bsdf.diffuse_transmittance(), f.specular});
+      if (!at.bsdf.has(material::kSpecularEvents) || !pass(f, at, wo)) break;
     }
-    return choose(v, direction, cosine);
+    return choose(v, start, local.z());
+  }
+
+  /// Goes on behind or before a pane, mirror, solid or lobe.
+  bool pass(Flight& f, const scene::Interaction<N>& at, const Vec3f& wo) {
+    const float choice = sampler_.next_1d();
+    const float roulette = sampler_.next_1d();
+    const auto s = at.bsdf.sample(wo, choice, sampler_.next_2d(), material::kSpecularEvents);
+    if (!s) return false;
+    f.weight *= s->weight;
+    const float survival = std::min(1.0f, 4.0f * f.weight.max());
+    if (!(roulette < survival)) return false;
+    f.weight *= 1.0f / survival;
+    if (s->event != material::kPaneStraight) f.specular = true;
+    const Vec3f direction = at.to_world(s->wi);
+    if ((direction.dot(at.ng) > 0.0f) != (s->wi.z() > 0.0f)) return false;
+    if (s->event == material::kRefraction || s->event == material::kLobeTransmission) {
+      const scene::MaterialId material = at.point.material;
+      if (at.side == Side::Front)
+        f.media.enter(material, shading_.material(material).extinction);
+      else
+        f.media.leave(material);
+    }
+    f.ray = {scene::offset_origin(at.point, direction), direction};
+    return true;
   }
 
   bool choose(Vertex& v, const Vec3f& direction, float cosine) {
@@ -199,7 +247,8 @@ class Walk {
       if (!is_outside(shading_, problem_.sides, m.at.point.object, other)) return false;
       v.at = shading_.interact(m.at.point, -m.at.ng);
     } else if (!hot_.empty() && !m.specular) {
-      const SideIndex j = problem_.side_at(m.at.point, m.at.side);
+      const SurfacePoint& p = m.at.point;
+      const SideIndex j = problem_.side_at(p.object, p.triangle, p.position, m.at.side);
       if (j != kNoSide)
         v.share = hot_.share_of_chance(j, m.at.point.position - from, cosine,
                                        std::abs(m.at.ng.dot(direction)));
@@ -352,7 +401,7 @@ bool ProbeTracer<N>::measure(std::vector<Probe>& probes, double noise, Work& wor
   if (n == 0) return !work.stopped();
   // A second pilot, because the first may have missed what is rare.
   if (!draw(std::vector<std::uint32_t>(n, kPilot), 0) || !draw(plan(batch, noise, 0.25), 1) ||
-      !draw(plan(batch, noise, 1.25), 2))
+      !draw(plan(batch, noise, 1.6), 2))
     return false;
   for (std::size_t k = 0; k < n; ++k) {
     probes[k].irradiance = batch.value(k);

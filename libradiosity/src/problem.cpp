@@ -14,31 +14,28 @@ using scene::SurfaceField;
 using scene::SurfacePoint;
 
 ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements)
-    : scene_(&scene), elements_(&elements), area_until_(elements.pieces.size()) {
+    : scene_(&scene), elements_(&elements) {
+  first_.reserve(elements.first_piece.size());
   for (std::size_t e = 0; e + 1 < elements.first_piece.size(); ++e) {
+    first_.push_back(static_cast<std::uint32_t>(fans_.size()));
     double sum = 0.0;
-    for (std::size_t p = elements.first_piece[e]; p < elements.first_piece[e + 1]; ++p)
-      area_until_[p] = static_cast<float>(sum += static_cast<double>(elements.pieces[p].area));
+    for (std::uint32_t p = elements.first_piece[e]; p < elements.first_piece[e + 1]; ++p) {
+      const auto& piece = elements.pieces[p];
+      const SurfacePoint point =
+          scene::surface_point(scene, piece.object, piece.triangle, 1.0f / 3, 1.0f / 3);
+      for (std::size_t c = 1; c + 1 < piece.corners.size(); ++c) {
+        const Vec3f edge1 = piece.corners[c] - piece.corners[0];
+        const Vec3f edge2 = piece.corners[c + 1] - piece.corners[0];
+        fans_.push_back({piece.corners[0], edge1, edge2, point.ng, point.error, p});
+        sum += 0.5 * edge1.cast<double>().cross(edge2.cast<double>()).norm();
+        area_until_.push_back(static_cast<float>(sum));
+      }
+    }
   }
+  first_.push_back(static_cast<std::uint32_t>(fans_.size()));
 }
 
 namespace {
-
-/// A point in a convex polygon: the fan triangle by u.x, then uniform within it.
-Vec3f sample_polygon(std::span<const Vec3f> corners, Vec2f u) {
-  std::array<float, 16> areas{};
-  const std::size_t fans = std::min(corners.size() - 2, areas.size());
-  float total = 0.0f;
-  for (std::size_t i = 0; i < fans; ++i)
-    total += areas[i] = (corners[i + 1] - corners[0]).cross(corners[i + 2] - corners[0]).norm();
-  float x = u.x() * total;
-  std::size_t fan = 0;
-  while (fan + 1 < fans && x >= areas[fan]) x -= areas[fan++];
-  const float first = areas[fan] > 0.0f ? std::clamp(x / areas[fan], 0.0f, 1.0f) : 0.0f;
-  const float root = std::sqrt(first);
-  return corners[0] * (1.0f - root) + corners[fan + 1] * (root * (1.0f - u.y())) +
-         corners[fan + 2] * (root * u.y());
-}
 
 /// Barycentric coordinates of corners 1 and 2, kept inside the triangle.
 Vec2f barycentric(const std::array<Vec3f, 3>& c, const Vec3f& p) {
@@ -55,17 +52,33 @@ Vec2f barycentric(const std::array<Vec3f, 3>& c, const Vec3f& p) {
 
 }  // namespace
 
-SurfacePoint ElementPoints::sample(std::uint32_t element, const Vec2f& u) const {
-  const auto first = area_until_.begin() + elements_->first_piece[element];
-  const auto last = area_until_.begin() + elements_->first_piece[element + 1];
-  const float x = u.x() * *(last - 1);
-  const auto it = std::min(std::upper_bound(first, last, x), last - 1);
-  const ElementPiece piece = elements_->pieces[static_cast<std::size_t>(it - area_until_.begin())];
-  const float before = it == first ? 0.0f : *(it - 1);
-  const float rest = *it > before ? std::clamp((x - before) / (*it - before), 0.0f, 1.0f) : 0.5f;
-  const Vec3f p = sample_polygon(piece.corners, {rest, u.y()});
-  const Vec2f b = barycentric(scene_->corners(piece.object, piece.triangle), p);
+ElementPoints::Spot ElementPoints::spot(std::uint32_t element, float u, float v) const {
+  const std::uint32_t first = first_[element];
+  const std::uint32_t last = first_[element + 1] - 1;
+  const float x = u * area_until_[last];
+  std::uint32_t fan = first;
+  if (last - first < 8)
+    while (fan < last && x >= area_until_[fan]) ++fan;
+  else
+    fan =
+        std::min(last, static_cast<std::uint32_t>(std::upper_bound(area_until_.begin() + first,
+                                                                   area_until_.begin() + last, x) -
+                                                  area_until_.begin()));
+  const float before = fan == first ? 0.0f : area_until_[fan - 1];
+  const float own = area_until_[fan] - before;
+  const float root = own > 0.0f ? std::sqrt(std::clamp((x - before) / own, 0.0f, 1.0f)) : 0.5f;
+  const Fan& f = fans_[fan];
+  return {f.corner + (root * (1.0f - v)) * f.edge1 + (root * v) * f.edge2, fan};
+}
+
+SurfacePoint ElementPoints::surface(const Spot& spot) const {
+  const ElementPiece piece = elements_->pieces[fans_[spot.fan].piece];
+  const Vec2f b = barycentric(scene_->corners(piece.object, piece.triangle), spot.position);
   return scene::surface_point(*scene_, piece.object, piece.triangle, b.x(), b.y());
+}
+
+SurfacePoint ElementPoints::sample(std::uint32_t element, const Vec2f& u) const {
+  return surface(spot(element, u.x(), u.y()));
 }
 
 namespace {
@@ -152,6 +165,24 @@ void find_closed_bodies(const scene::Shading<N>& shading, Sides<N>& sides) {
     if (inner[i] > kProbes / 1000) sides.closed_opaque[i] = 0;
 }
 
+/// Objects of which a Bsdf without any point in mind says all.
+template <int N>
+std::vector<std::uint8_t> find_plain(const scene::Shading<N>& shading) {
+  const scene::Scene& scene = shading.scene();
+  const auto one = Spectrum<N>::one();
+  std::vector<std::uint8_t> plain(scene.objects.size(), 0);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::Object& object = scene.objects[i];
+    const auto& material = shading.material(object.material);
+    bool specular = false;
+    for (const bool front : {true, false})
+      specular |= material::Bsdf<N>(material, front, one, one, 1.0f).has(material::kSpecularEvents);
+    plain[i] = !specular && !material.traits.coupled && !material.traits.textured &&
+               !material.traits.alpha_mask && scene.meshes[object.mesh.value].colors.empty();
+  }
+  return plain;
+}
+
 bool specular_scene(const scene::Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const scene::Object& o) {
     const material::MaterialTraits t = material::traits(scene.materials[o.material.value]);
@@ -182,6 +213,7 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
   sides.transmittance.assign(n, {});
   sides.coupled.assign(n / 2, 0);
   find_closed_bodies(shading, sides);
+  sides.plain = find_plain(shading);
   const SideProperties<N> properties(shading, elements, points, options.seed);
   scene::parallel_for(n / 2, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) properties.find(sides, static_cast<std::uint32_t>(e));
@@ -193,9 +225,10 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
 }
 
 template <int N>
-SideIndex Problem<N>::side_at(const SurfacePoint& point, Side side) const {
+SideIndex Problem<N>::side_at(ObjectId object, std::uint32_t triangle, const Vec3f& position,
+                              Side side) const {
   const std::uint32_t element =
-      elements.layout.element_at(shading.scene(), point.object, point.triangle, point.position);
+      elements.layout.element_at(shading.scene(), object, triangle, position);
   if (element == SurfaceField::kNone) return kNoSide;
   const SideIndex i = side_index(element, side);
   return sides.is_active[i] != 0 ? i : kNoSide;

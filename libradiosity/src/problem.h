@@ -25,17 +25,38 @@ inline constexpr SideIndex kNoSide = 0xffffffffU;
   return std::min(samples, std::max(8, samples >> std::min(level, 8)));
 }
 
-/// Draws points on an element, uniform by area.
+/// Draws points on an element, uniform by area. Holds the elements' pieces as triangles, so that a
+/// point costs one search and no look at the scene.
 class ElementPoints {
  public:
   ElementPoints(const scene::Scene& scene, const Elements& elements);
+
+  /// What a ray needs of a surface point.
+  struct Spot {
+    Vec3f position;
+    std::uint32_t fan;  ///< the triangle it lies in, for ng() and error()
+  };
+  /// \param u  in [0, 1)^2.
+  [[nodiscard]] Spot spot(std::uint32_t element, float u, float v) const;
+  [[nodiscard]] const Vec3f& ng(std::uint32_t fan) const { return fans_[fan].ng; }
+  [[nodiscard]] float error(std::uint32_t fan) const { return fans_[fan].error; }
   /// \param u  in [0, 1)^2.
   [[nodiscard]] scene::SurfacePoint sample(std::uint32_t element, const Vec2f& u) const;
+  /// The surface at a spot, for materials.
+  [[nodiscard]] scene::SurfacePoint surface(const Spot& spot) const;
 
  private:
+  struct Fan {
+    Vec3f corner, edge1, edge2;
+    Vec3f ng;
+    float error;  ///< SurfacePoint::error of the scene's triangle
+    std::uint32_t piece;
+  };
   const scene::Scene* scene_;
   const Elements* elements_;
-  std::vector<float> area_until_;  ///< within the element, after each piece
+  std::vector<std::uint32_t> first_;  ///< fans of an element; element_count() + 1
+  std::vector<Fan> fans_;
+  std::vector<float> area_until_;  ///< within the element, after each fan
 };
 
 /// What the elements' sides do with light.
@@ -48,6 +69,9 @@ struct Sides {
   std::vector<std::uint8_t> coupled;       ///< by element: E_B is what reflectance applies to
   bool any_coupled = false;
   std::vector<std::uint8_t> closed_opaque;  ///< by object: a hit on its back means "inside"
+  /// By object: scatters diffusely and does nothing else, the same everywhere. Then a hit's side is
+  /// all that light transport needs to know.
+  std::vector<std::uint8_t> plain;
 };
 
 /// May a side of an object's surface take part? Diffuse light at the inner faces of solids and at
@@ -80,7 +104,8 @@ struct Problem {
   /// Number of a side's own random sequence.
   [[nodiscard]] std::uint32_t stream(SideIndex i) const { return streams_[i]; }
   /// The active side that a hit belongs to, or kNoSide.
-  [[nodiscard]] SideIndex side_at(const scene::SurfacePoint& point, scene::Side side) const;
+  [[nodiscard]] SideIndex side_at(scene::ObjectId object, std::uint32_t triangle,
+                                  const Vec3f& position, scene::Side side) const;
 
  private:
   std::vector<std::uint32_t> streams_;

@@ -1,12 +1,30 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "hot_patches.h"
 #include "problem.h"
 
 namespace atrium::radiosity {
+
+/// Leaves plain values uninitialised in resize(): the threads that fill them touch them first.
+template <class T>
+struct Unfilled : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = Unfilled<U>;
+  };
+  template <class U, class... Args>
+  void construct(U* place, Args&&... args) {
+    if constexpr (sizeof...(Args) == 0)
+      ::new (static_cast<void*>(place)) U;
+    else
+      ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+  }
+};
 
 /// Sparse hemisphere rows: row k belongs to active side k and says which sides it sees, with how
 /// many of its rays. Sums, not means: divide by rays[k].
@@ -20,11 +38,12 @@ struct Rows {
     std::uint32_t spectral;  ///< index into `spectral` if chromatic
   };
   std::vector<std::uint64_t> first;  ///< active sides + 1
-  std::vector<Entry> entries;
+  std::vector<Entry, Unfilled<Entry>> entries;
   std::vector<Spectrum<N>> spectral;   ///< weights that differ between lanes
   std::vector<std::uint32_t> rays;     ///< valid ones, by active side
   std::vector<std::uint32_t> dropped;  ///< origins inside closed bodies
   std::vector<float> escaped;          ///< summed weight that left the scene, lane mean
+  std::vector<float> in_medium;        ///< summed weight that the air took, lane mean
   /// Summed first light of hot patches that rays found by chance: plain and body irradiance by
   /// group, by active side. It is not in what the entries read. Empty without hot patches.
   std::vector<Spectrum<N>> hot;

@@ -47,9 +47,7 @@ class RowSolver {
     photons_ = trace_photons(problem_, work_, counters_);
     build_rows();
     work_.begin("gathering", 0.98);
-    draw_gather(top_up(problem_, gathered_, lit_sides(),
-                       by_error() ? kPilot : problem_.options.gather_rays));
-    assemble();
+    gather_twice(by_error() ? kPilot : problem_.options.gather_rays);
     if (by_error()) reach_error();
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
     return std::move(result_);
@@ -82,6 +80,20 @@ class RowSolver {
     sample_gather(problem_, field, hot_, plan, gathered_, work_, counters_);
   }
 
+  /// A quarter of the rays against the rows' field, the rest against the one that these make of it:
+  /// the rows' own noise would stay in the second bounce otherwise. Few rays are not worth it.
+  void gather_twice(int rays) {
+    constexpr int kWorthwhile = 64;
+    const std::vector<SideIndex> lit = lit_sides();
+    if (rays >= kWorthwhile) {
+      draw_gather(top_up(problem_, gathered_, lit, rays / 4));
+      assemble();
+      refine_field(top_up(problem_, gathered_, lit, rays));
+    }
+    draw_gather(top_up(problem_, gathered_, lit, rays));
+    assemble();
+  }
+
   /// A first round of rays for every side; more where it found light. A side that sees only dark
   /// or no surfaces with all of its first rays keeps those.
   void build_rows() {
@@ -97,7 +109,8 @@ class RowSolver {
     find_buried();
     draw_direct_of_mixed();
     take_direct();
-    draw_hot(top_up(problem_, shot_, problem_.sides.active, kPilot));
+    draw_hot(top_up(problem_, shot_, problem_.sides.active,
+                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2)));
     solve_bounces();
     if (first == all) return;
     work_.begin("rows", 0.6);
@@ -248,8 +261,7 @@ class RowSolver {
   /// What samples found is a better field than the rows' for the next samples to read. Those that
   /// go on are drawn anew against it.
   void refine_field(const std::vector<Draw>& plan) {
-    const std::vector<double> variance(result_.indirect.variance.begin(),
-                                       result_.indirect.variance.end());
+    const std::vector<double> variance = indirect_variances();
     for (GroupLight<N>& g : groups_) {
       for (const SideIndex i : problem_.sides.active)
         g.bounced[i] = exchange(problem_, g.indirect, i);
@@ -282,26 +294,36 @@ class RowSolver {
   /// Fresh rays against the smoothed solution, pooled with the rows' own estimate against it; what
   /// that changes is propagated through the rows once more, as a smooth field again.
   void assemble() {
-    for (std::size_t g = 0; g < groups_.size(); ++g) improve(g);
+    for (std::size_t g = 0; g < groups_.size(); ++g) pool(g);
     sum_groups();
     estimate_variance();
+    for (GroupLight<N>& g : groups_) propagate(g);
+    sum_groups();
   }
 
-  void improve(std::size_t group) {
+  void pool(std::size_t group) {
     GroupLight<N>& g = groups_[group];
     g.indirect = Irradiance<N>(problem_.side_count(), problem_.sides.any_coupled);
     const SideValues<N> b = radiosity(g);
     for (std::size_t k = 0; k < rows_.size(); ++k) pool(k, group, b);
+  }
+
+  [[nodiscard]] std::vector<double> indirect_variances() const {
+    return {result_.indirect.variance.begin(), result_.indirect.variance.end()};
+  }
+
+  void propagate(GroupLight<N>& g) {
     SideValues<N> difference(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       difference[i] = exchange(problem_, g.indirect, i);
-    difference = (*g.smoothing)(difference);
+    const Smoothing<N> smoothing(problem_, neighbours_, difference, indirect_variances());
+    difference = smoothing(difference);
     for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
     const SideValues<N> none(problem_.side_count());
     SideValues<N> change(problem_.side_count());
     const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
     result_.iteration.iterations += more.iterations;
-    change = (*g.smoothing)(change);
+    change = smoothing(change);
     for (const SideIndex i : problem_.sides.active) {
       const bool coupled = problem_.sides.coupled[i / 2] != 0;
       Spectrum<N>& own = coupled ? g.indirect.body[i] : g.indirect.plain[i];

@@ -70,7 +70,7 @@ template <int N>
 [[nodiscard]] FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& solution,
                                        const Photons<N>& photons, const Rows<N>& rows);
 
-/// \throws Error  naming the solver if something mirrors, refracts or glosses.
+/// \throws Error  naming the solver if something mirrors, refracts or glosses or the air absorbs.
 template <int N>
 void require_diffuse(const Problem<N>& problem, const char* solver);
 

@@ -157,25 +157,38 @@ struct Draw {
   std::uint32_t more;
 };
 
-/// Draws samples: one(side, replicate, index, sums, counters) adds one sample and returns whether
-/// its point was valid. Sides are independent, so threads do not matter.
+/// Draws samples: draw(side, replicate, first, count, sums, counters) adds `count` of them and
+/// returns how many of their points were valid. Sides are independent, so threads do not matter.
 /// \return  false if stopped early.
-template <int N, class One>
+template <int N, class Samples>
 bool draw_samples(const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
-                  scene::Counters& counters, One&& one) {
+                  scene::Counters& counters, Samples&& draw) {
   return work.run(
-      plan.size(), 128, counters, [&](std::size_t begin, std::size_t end, scene::Counters& c) {
+      plan.size(), 32, counters, [&](std::size_t begin, std::size_t end, scene::Counters& c) {
         SideSums<N> sums(tally.groups());
         for (std::size_t k = begin; k < end; ++k) {
           const auto [side, more] = plan[k];
           sums.clear();
-          const std::uint32_t first = tally.drawn(side);
           for (int r = 0; r < kReplicates; ++r)
-            for (std::uint32_t s = first; s < first + more; ++s)
-              if (one(side, r, s, sums, c)) ++sums.valid[static_cast<std::size_t>(r)];
+            sums.valid[static_cast<std::size_t>(r)] +=
+                draw(side, r, tally.drawn(side), more, sums, c);
           tally.add(side, sums, more);
         }
       });
+}
+/// The same with one(side, replicate, index, sums, counters) adding a single sample; it returns
+/// whether the point was valid.
+template <int N, class One>
+bool draw_one_by_one(const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
+                     scene::Counters& counters, One&& one) {
+  return draw_samples(plan, tally, work, counters,
+                      [&](SideIndex side, int replicate, std::uint32_t first, std::uint32_t count,
+                          SideSums<N>& sums, scene::Counters& c) {
+                        std::uint32_t valid = 0;
+                        for (std::uint32_t s = first; s < first + count; ++s)
+                          valid += one(side, replicate, s, sums, c) ? 1 : 0;
+                        return valid;
+                      });
 }
 
 /// A sampler's seed in one replicate.

@@ -155,13 +155,13 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
       if (straight)
-        g.straight += beta * shading.lights().environment(ray.direction) *
-                      environment_weight(shading, vertex, ray.direction);
+        g.straight +=
+            beta * sky_radiance(shading, ray) * environment_weight(shading, vertex, ray.direction);
       break;
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
-    beta *= segment_transmittance(shading, surface, distance);
+    beta *= segment_transmittance(shading, surface, ray, distance);
     if (straight) {
       const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
       if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
@@ -214,14 +214,14 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
-      const Spectrum<N> sky = shading.lights().environment(ray.direction);
+      const Spectrum<N> sky = sky_radiance(shading, ray);
       if (!sky.is_zero())
         add_emission(depth, sky * environment_weight(shading, vertex, ray.direction));
       break;
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
-    beta *= segment_transmittance(shading, surface, distance);
+    beta *= segment_transmittance(shading, surface, ray, distance);
     if (depth == 0) {
       out.depth = distance;
       out.normal = surface.frame.z;

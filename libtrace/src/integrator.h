@@ -62,6 +62,12 @@ template <int N>
   const float distance = (hit.position - v.position).norm();
   return mis_weight(v.pdf, shading.lights().pdf(v.position, v.normal, hit, distance));
 }
+/// Radiance that a ray brings which meets nothing.
+template <int N>
+[[nodiscard]] Spectrum<N> sky_radiance(const scene::Shading<N>& shading, const scene::Ray& ray) {
+  const Spectrum<N> sky = shading.lights().environment(ray.direction);
+  return shading.has_medium() && !sky.is_zero() ? sky * shading.through_medium(ray, ray.tmax) : sky;
+}
 template <int N>
 [[nodiscard]] float environment_weight(const scene::Shading<N>& shading, const ScatterVertex& v,
                                        const Vec3f& direction) {
@@ -69,15 +75,16 @@ template <int N>
   return mis_weight(v.pdf, shading.lights().pdf_environment(v.position, v.normal, direction));
 }
 
-/// Transmittance of the segment that ends at this surface: a solid that is hit from the inside.
+/// Transmittance of the segment that ends at this surface: through the air, or through a solid that
+/// is hit from the inside.
 template <int N>
 [[nodiscard]] Spectrum<N> segment_transmittance(const scene::Shading<N>& shading,
                                                 const scene::Interaction<N>& surface,
-                                                float distance) {
+                                                const scene::Ray& ray, float distance) {
   const material::Material& m = *shading.material(surface.point.material).source;
-  if (surface.side == scene::Side::Front || m.medium != material::Material::Medium::Solid ||
-      surface.bsdf.extinction().is_zero())
-    return Spectrum<N>::one();
+  if (surface.side == scene::Side::Front || m.medium != material::Material::Medium::Solid)
+    return shading.through_medium(ray, distance);
+  if (surface.bsdf.extinction().is_zero()) return Spectrum<N>::one();
   return exp_minus(surface.bsdf.extinction(), distance);
 }
 

@@ -106,13 +106,13 @@ PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& camera_ray,
     float distance = 0.0f;
     const auto hit = shading.closest(b.ray, counters, ray_kind(b.depth), &distance);
     if (!hit) {
-      if (b.lists_emitters) add(Term::Emission, shading.lights().environment(b.ray.direction));
+      if (b.lists_emitters) add(Term::Emission, sky_radiance(shading, b.ray));
       continue;
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -b.ray.direction);
     const Vec3f wo = surface.to_local(-b.ray.direction);
     const material::ResolvedMaterial<N>& resolved = shading.material(hit->material);
-    b.weight *= segment_transmittance(shading, surface, distance);
+    b.weight *= segment_transmittance(shading, surface, b.ray, distance);
     if (b.depth > 0) b.weight *= ray_falloff(*resolved.source, distance);
     if (b.depth == 0) {
       out.depth = distance;

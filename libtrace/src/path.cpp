@@ -80,7 +80,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
-      const Spectrum<N> sky = shading.lights().environment(ray.direction);
+      const Spectrum<N> sky = sky_radiance(shading, ray);
       if (!sky.is_zero())
         attribution.add(out, beta * sky * environment_weight(shading, vertex, ray.direction),
                         scattered == 1);
@@ -89,7 +89,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
     const Vec3f wo_world = -ray.direction;
     const scene::Interaction<N> surface = shading.interact(*hit, wo_world);
     const Vec3f wo = surface.to_local(wo_world);
-    beta *= segment_transmittance(shading, surface, distance);
+    beta *= segment_transmittance(shading, surface, ray, distance);
     if (depth == 0) {
       out.depth = distance;
       out.normal = surface.frame.z;

@@ -14,7 +14,7 @@ using test::Solved;
 constexpr double kPi = std::numbers::pi;
 using Verdict = Certificate::Verdict;
 
-// A field that says the same everywhere; `factor` by object.
+// A field that says the same on all sides that it called lit; `factor` by object.
 SolveResult uniform_field(const Solved& s, double irradiance,
                           const std::vector<double>& factor = {}) {
   SolveResult r = s.result;
@@ -22,10 +22,11 @@ SolveResult uniform_field(const Solved& s, double irradiance,
   e.indirect.assign(e.indirect.size(), 0.0f);
   e.caustic.clear();
   for (std::size_t i = 0; i < s.count(); ++i)
-    for (const std::size_t side : {0U, 1U}) {
-      const bool valid = r.field.valid[2 * i + side] != 0;
+    for (const int side : {0, 1}) {
+      const bool lit = s.total(i, side) > 0.0;
       const double f = factor.empty() ? 1.0 : factor[s.object(i)];
-      e.direct[2 * i + side] = valid ? static_cast<float>(f * irradiance) : 0.0f;
+      e.direct[2 * i + static_cast<std::size_t>(side)] =
+          lit ? static_cast<float>(f * irradiance) : 0.0f;
     }
   return r;
 }
@@ -73,7 +74,7 @@ scene::Scene furnace(bool with_things) {
   pane.n = 1.52;
   maker.quad(maker.material(pane), {1, 0.1f, 0.1f}, {1, 1.9f, 0.1f}, {1, 1.9f, 1.9f},
              {1, 0.1f, 1.9f});
-  material::Material sheet = warm(test::diffuse(0.3), 0.2);
+  material::Material sheet = test::diffuse(0.5);  // what it does not reflect it lets through
   sheet.k_tp_df = 1.0;
   sheet.body_transmittance = material::SpectralValue(0.5);
   maker.quad(maker.material(sheet), {1.5f, 0.1f, 0.1f}, {1.5f, 1.9f, 0.1f}, {1.5f, 1.9f, 1.9f},

@@ -117,6 +117,41 @@ TEST(PathTracer, DirectLightOfASquareMatchesTheFormFactor) {
   EXPECT_LT(p.error, 0.005);
 }
 
+// A room with one glazed window under a clear sky: its floor has the same light by path tracing
+// with portals and without, and with them a good deal less noise.
+TEST(PathTracer, PortalsChangeTheNoiseOfARoomAndNotItsLight) {
+  Picture picture_with[2];
+  for (const bool portals : {false, true}) {
+    SceneMaker s;
+    const auto wall = s.diffuse(0.5);
+    s.quad(wall, {0, 0, 0}, {0, 0, 4}, {5, 0, 0});
+    s.quad(wall, {0, 3, 0}, {5, 0, 0}, {0, 0, 4});
+    s.quad(wall, {5, 0, 0}, {0, 0, 4}, {0, 3, 0});
+    s.quad(wall, {0, 0, 0}, {5, 0, 0}, {0, 3, 0});
+    s.quad(wall, {0, 0, 4}, {0, 3, 0}, {5, 0, 0});
+    s.quad(wall, {0, 0, 0}, {0, 1, 0}, {0, 0, 4});
+    s.quad(wall, {0, 2.2, 0}, {0, 0.8, 0}, {0, 0, 4});
+    s.quad(wall, {0, 1, 0}, {0, 1.2, 0}, {0, 0, 1});
+    s.quad(wall, {0, 1, 3}, {0, 1.2, 0}, {0, 0, 1});
+    Material glass;
+    glass.medium = Material::Medium::Pane;
+    glass.n = 1.52;
+    glass.k_df = 0.0;
+    glass.k_rg = glass.k_tp_rg = 1.0;
+    s.quad(s.material(glass), {0, 1, 1}, {0, 1.2, 0}, {0, 0, 2});
+    scene::Environment& sky = s.model().environment.emplace();
+    sky.radiance = 100.0;
+    sky.pattern = scene::SkyDome(scene::cie_sky(12), Vec3d(0.3, 0.8, 0.4).normalized(), 0.2);
+    s.model().portals.find = portals;
+    picture_with[portals ? 1 : 0] =
+        picture(s.build(), camera_at({2.5, 2.9, 2.0}, {2.5, 0, 2.01}, 0.8), path_options(16, 256));
+  }
+  const auto& [without, with] = picture_with;
+  EXPECT_NEAR(with.mean, without.mean, 4.0 * std::hypot(with.error, without.error));
+  EXPECT_GT(with.mean, 0.1);
+  EXPECT_LT(with.error, 0.5 * without.error);
+}
+
 // Point light: E = I cos / r^2 (CIE 171, 5.2), through a pane times T of the pane.
 TEST(PathTracer, PointLightFollowsInverseSquareAndPanesTransmit) {
   for (const bool with_pane : {false, true}) {
@@ -140,6 +175,41 @@ TEST(PathTracer, PointLightFollowsInverseSquareAndPanesTransmit) {
     const double expected = 0.5 / std::numbers::pi * 1000.0 / 9.0 * (with_pane ? 0.9183 : 1.0);
     EXPECT_NEAR(p.mean, expected, 2e-4 * expected) << with_pane;
   }
+}
+
+// Air that absorbs: a wall of radiance 1 at 2.5 m shows exp(-2.5 K); a floor 1 m below the eye and
+// 2 m below a point light 1000 / 4 rho / pi exp(-(1 + 2) K); the sky above it exp(-K) of the 1 m
+// that is left of the bounds.
+TEST(PathTracer, AirAbsorbsAlongEveryKindOfRay) {
+  const double k = 0.4;
+  {
+    SceneMaker s;
+    s.box(s.diffuse(0.0, 1.0), {0, 0, 0}, {3, 2, 4}, true);
+    scene::Scene scene = s.build();
+    scene.medium_extinction = k;
+    const Picture p =
+        picture(scene, camera_at({1.5, 1, 1.5}, {1.5, 1.001, 4}, 0.002), path_options(4, 16));
+    EXPECT_NEAR(p.mean, std::exp(-2.5 * k), 1e-4);
+  }
+  SceneMaker s;
+  s.quad(s.diffuse(0.5), {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
+  s.quad(s.diffuse(0.0), {-2, 0, -2}, {4, 0, 0}, {0, 2.5, 0});  // a wall: bounds 2.5 m high
+  scene::Light light;
+  light.kind = scene::PointLight{.intensity = 1000.0, .falloff = {}};
+  light.to_scene.translation() = Vec3d(0, 2, 0);
+  s.model().lights.push_back(light);
+  s.model().environment.emplace();
+  scene::Scene scene = s.build();
+  scene.medium_extinction = k;
+  scene.environment->radiance = 1e-9;
+  RenderOptions o = path_options(4, 64);
+  o.method = Method::Direct;
+  const Picture floor = picture(scene, camera_at({0.0, 1.0, 0.05}, {0, 0, 0}, 0.002), o);
+  const double expected = 0.5 / std::numbers::pi * 250.0 * std::exp(-(std::hypot(1, 0.05) + 2) * k);
+  EXPECT_NEAR(floor.mean, expected, 3e-4 * expected);
+  scene.environment->radiance = 1.0;
+  const Picture sky = picture(scene, camera_at({0.0, 1.5, 0.0}, {0, 3, 1e-4}, 0.002), o);
+  EXPECT_NEAR(sky.mean, std::exp(-k), 1e-4);
 }
 
 // The same seed gives the same bits, whatever the terms are split into; the terms sum to the image.

@@ -43,11 +43,12 @@ struct SolveOptions {
   int probes = 0;  ///< points of the Certificate; 0: none is made
 };
 
-/// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + unshot within their errors.
+/// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + in_medium within their errors.
 struct FluxBalance {
   double emitted = 0.0;   ///< by the lights
   double absorbed = 0.0;  ///< counted at the surfaces
   double escaped = 0.0;   ///< counted at rays that leave the scene
+  double in_medium = 0.0;  ///< counted where the air absorbs (Scene::medium_extinction)
   double standard_error = 0.0;
 };
 

@@ -391,6 +391,7 @@ Scene build_scene(Model model, const BuildOptions& options) {
   scene.cameras = std::move(model.cameras);
   scene.environment = std::move(model.environment);
   scene.portals = std::move(model.portals);
+  scene.medium_extinction = std::move(model.medium_extinction);
   scene.unit = model.unit;
   Builder builder(scene);
   for (Job& job : jobs) builder.add(job, nodes);

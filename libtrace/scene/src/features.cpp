@@ -73,6 +73,11 @@ Features find_features(const Scene& scene) {
     f.chromatic |= std::holds_alternative<Image>(scene.environment->pattern) ||
                    !material::is_achromatic(scene.environment->radiance);
   }
+  if (material::max_value(scene.medium_extinction) > 0.0) {
+    f.medium = true;
+    f.chromatic |= !material::is_achromatic(scene.medium_extinction);
+    f.wavelength_data |= std::holds_alternative<material::SampledSpectrum>(scene.medium_extinction);
+  }
   return f;
 }
 
@@ -96,6 +101,8 @@ std::vector<Decision> decide(const Features& f) {
   add("shadow rays through panes or masks", f.panes || f.alpha_masks, "panes or alpha masks",
       "no pane, no alpha mask: plain occlusion");
   add("extinction", f.absorbing_media, "a medium absorbs", "no absorbing medium");
+  add("extinction of the air", f.medium, "the scene lies in an absorbing medium",
+      "the air is clear: rays keep what they carry");
   add("textures", f.textures, "materials read images", "nothing is textured");
   add("environment", f.environment, "light from outside the model", "no environment");
   add("colour lanes", f.chromatic || f.wavelength_data, "colours differ between lanes",

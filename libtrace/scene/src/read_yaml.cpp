@@ -43,7 +43,7 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
   const YamlMap top = YamlView(tree, scene.file)
                           .map("scene", {"atrium", "description", "unit", "spectra", "materials",
                                          "groups", "objects", "lights", "cameras", "environment",
-                                         "sky", "sun", "north", "portals"});
+                                         "sky", "sun", "north", "portals", "medium"});
   if (top.get("atrium").number() != 1.0) top.get("atrium").fail("this version reads atrium: 1");
   read_unit(scene, top);
   const std::size_t first_node = model.nodes.size();
@@ -63,6 +63,12 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
   }
   read_daylight(scene, top);
   if (const auto view = top.find("portals")) read_portals(scene, *view);
+  if (const auto view = top.find("medium")) {
+    if (material::max_value(model.medium_extinction) > 0.0)
+      view->fail("a file before this one has a medium already");
+    model.medium_extinction =
+        read_extinction(scene, view->map("medium", {"extinction"}).get("extinction"));
+  }
   resolve_powers(scene, first_node);
 }
 

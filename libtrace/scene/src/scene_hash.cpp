@@ -150,6 +150,7 @@ std::uint64_t hash_scene(const Scene& scene) {
     std::visit(AddSky{h}, scene.environment->pattern);
     add_vector(h, scene.environment->to_scene.matrix());
   }
+  add(h, scene.medium_extinction);
   h.value(scene.unit);
   return h.result();
 }

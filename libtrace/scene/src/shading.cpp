@@ -4,7 +4,11 @@ namespace atrium::scene {
 
 template <int N>
 Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis, Weights weights)
-    : query_(&query), basis_(basis), lights_(query.scene(), basis, find_portals(query)) {
+    : query_(&query),
+      basis_(basis),
+      lights_(query.scene(), basis, find_portals(query)),
+      medium_(basis.template resolve_at_wavelength<N>(query.scene().medium_extinction)),
+      has_medium_(!medium_.is_zero()) {
   if (weights == Weights::Paper) {
     sources_.reserve(scene().materials.size());
     for (const material::Material& m : scene().materials)
@@ -29,16 +33,16 @@ bool Shading<N>::cut_out(const SurfacePoint& point) const {
 }
 
 template <int N>
-std::optional<SurfacePoint> Shading<N>::closest(const Ray& ray, Counters& counters, Counter kind,
-                                                float* distance) const {
+std::optional<Hit> Shading<N>::closest_hit(const Ray& ray, Counters& counters, Counter kind) const {
   Ray r = ray;
   float travelled = 0.0f;
-  while (const auto hit = query_->closest(r, counters, kind)) {
-    const SurfacePoint point = surface_point(scene(), *hit);
+  while (auto hit = query_->closest(r, counters, kind)) {
     travelled += hit->t;
-    if (!cut_out(point)) {
-      if (distance != nullptr) *distance = travelled;
-      return point;
+    const bool masked = scene().material_of(hit->object).alpha_cutoff > 0.0f;
+    const SurfacePoint point = masked ? surface_point(scene(), *hit) : SurfacePoint{};
+    if (!masked || !cut_out(point)) {
+      hit->t = travelled;
+      return hit;
     }
     r.origin = offset_origin(point, r.direction);
     r.tmin = 0.0f;
@@ -46,6 +50,26 @@ std::optional<SurfacePoint> Shading<N>::closest(const Ray& ray, Counters& counte
     if (!(r.tmax > 0.0f)) break;
   }
   return std::nullopt;
+}
+
+template <int N>
+void Shading<N>::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, Counters& counters,
+                              Counter kind) const {
+  if (!query_->has(kAlpha)) {
+    query_->closest(rays, hits, counters, kind);
+    return;
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    hits[i] = closest_hit(rays[i], counters, kind).value_or(Hit::none());
+}
+
+template <int N>
+std::optional<SurfacePoint> Shading<N>::closest(const Ray& ray, Counters& counters, Counter kind,
+                                                float* distance) const {
+  const auto hit = closest_hit(ray, counters, kind);
+  if (!hit) return std::nullopt;
+  if (distance != nullptr) *distance = hit->t;
+  return surface_point(scene(), *hit);
 }
 
 namespace {
@@ -114,7 +138,7 @@ typename Shading<N>::Factors Shading<N>::factors(const SurfacePoint& point) cons
 template <int N>
 Spectrum<N> Shading<N>::transmittance(const Ray& ray, Counters& counters, Counter kind) const {
   if (query_->has(kOpaque) && query_->occluded(ray, counters, kind, kOpaque)) return {};
-  Spectrum<N> t = Spectrum<N>::one();
+  Spectrum<N> t = through_medium(ray, ray.tmax);
   if (!query_->has(kPane | kAlpha)) return t;
   Ray r = ray;
   while (const auto hit = query_->closest(r, counters, kind, kPane | kAlpha)) {
@@ -130,6 +154,24 @@ Spectrum<N> Shading<N>::transmittance(const Ray& ray, Counters& counters, Counte
     if (!(r.tmax > 0.0f) || t.is_zero()) break;
   }
   return t;
+}
+
+template <int N>
+Spectrum<N> Shading<N>::through_medium(const Ray& ray, float distance) const {
+  if (!has_medium_) return Spectrum<N>::one();
+  float enter = 0.0f;
+  float leave = distance;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float inverse = 1.0f / ray.direction[axis];
+    const auto low = static_cast<float>(scene().bounds.min()[axis]);
+    const auto high = static_cast<float>(scene().bounds.max()[axis]);
+    const float a = (low - ray.origin[axis]) * inverse;
+    const float b = (high - ray.origin[axis]) * inverse;
+    if (std::isnan(a) || std::isnan(b)) continue;  // within a face of the bounds, along it
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return leave > enter ? exp_minus(medium_, leave - enter) : Spectrum<N>::one();
 }
 
 template <int N>

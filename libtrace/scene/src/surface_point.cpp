@@ -76,7 +76,7 @@ SurfacePoint surface_point(const Scene& scene, ObjectId id, std::uint32_t triang
 
 Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction) {
   const float side = direction.dot(point.ng) >= 0.0f ? 1.0f : -1.0f;
-  return point.position + (side * (point.error + 1e-30f)) * point.ng;
+  return offset_origin(point.position, point.error, side * point.ng);
 }
 
 }  // namespace atrium::scene

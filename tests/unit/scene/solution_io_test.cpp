@@ -158,6 +158,7 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   add_sky(13, up, 0.2);
   add_sky(16, up, 0.2);
   EXPECT_EQ(skies.size(), 5u);
+  EXPECT_TRUE(changed([](Scene& s) { s.medium_extinction = 0.1; }));
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
 }
 

@@ -870,5 +870,14 @@ TEST(ShippedScenes, InteriorViewOfTheOfficeIsInTheRoom) {
   EXPECT_TRUE(choose_interior_view(scene, query).to_scene.isApprox(camera.to_scene, 0.0));
 }
 
+TEST_F(YamlScenes, MediumIsTheExtinctionOfTheAir) {
+  EXPECT_EQ(std::get<double>(read("objects: []\n").medium_extinction), 0.0);
+  const Model model = read("medium: {extinction: [0.1, 0.2, 0.3]}\n");
+  EXPECT_EQ(std::get<Rgb>(model.medium_extinction), make_rgb(0.1, 0.2, 0.3));
+  EXPECT_NE(error("medium: {extinction: -1}\n"), "");
+  EXPECT_NE(error("medium: {density: 1}\n").find("extinction"), std::string::npos);
+  EXPECT_NE(error("medium: {}\n"), "");
+}
+
 }  // namespace
 }  // namespace atrium::scene

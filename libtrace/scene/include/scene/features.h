@@ -20,7 +20,8 @@ struct Features {
   bool coupled = false;
   bool textures = false;
   bool alpha_masks = false;
-  bool absorbing_media = false;
+  bool absorbing_media = false;       ///< bodies that absorb
+  bool medium = false;                ///< the air absorbs
   bool chromatic = false;             ///< more than one lane
   bool wavelength_data = false;       ///< samples or optical constants: wavelengths
   bool environment = false;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "scene/counters.h"
@@ -25,6 +26,12 @@ struct Hit {
   float u = 0.0f, v = 0.0f;  ///< barycentric of corners 1 and 2
   ObjectId object;
   std::uint32_t triangle = 0;  ///< within the object's mesh
+  Vec3f ng = Vec3f::Zero();    ///< geometric normal by the winding, scene coordinates, any length
+
+  [[nodiscard]] bool found() const { return t < std::numeric_limits<float>::infinity(); }
+  [[nodiscard]] static Hit none() {
+    return {std::numeric_limits<float>::infinity(), 0, 0, {}, 0, Vec3f::Zero()};
+  }
 };
 
 /// Classes of geometry that a ray may be told to ignore.
@@ -51,6 +58,9 @@ class RayQuery {
   /// Closest hit within [tmin, tmax]. `kind` says which counter the ray belongs to.
   [[nodiscard]] std::optional<Hit> closest(const Ray& ray, Counters& counters, Counter kind,
                                            std::uint32_t mask = kEverything) const;
+  /// The same for many rays at once; Hit::none() where there is none.
+  void closest(std::span<const Ray> rays, std::span<Hit> hits, Counters& counters, Counter kind,
+               std::uint32_t mask = kEverything) const;
   /// Is anything of `mask` within [tmin, tmax]?
   [[nodiscard]] bool occluded(const Ray& ray, Counters& counters, Counter kind,
                               std::uint32_t mask = kOpaque) const;
@@ -87,5 +97,9 @@ struct SurfacePoint {
 /// Origin of a ray that leaves the point towards `direction`, moved off the surface along ng by
 /// more than the rounding error, to the side the direction points to.
 [[nodiscard]] Vec3f offset_origin(const SurfacePoint& point, const Vec3f& direction);
+/// The same for a ray on the side of the unit normal ng.
+[[nodiscard]] inline Vec3f offset_origin(const Vec3f& position, float error, const Vec3f& ng) {
+  return position + (error + 1e-30f) * ng;
+}
 
 }  // namespace atrium::scene

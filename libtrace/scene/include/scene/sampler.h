@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "material/frame.h"
@@ -26,45 +28,70 @@ class Sampler {
  public:
   /// \param stream  pixel, element, photon batch...; \param index  sample number within the stream.
   Sampler(std::uint64_t seed, std::uint32_t stream, std::uint32_t index)
-      : key_(hash_combine(hash_combine(static_cast<std::uint32_t>(seed),
-                                       static_cast<std::uint32_t>(seed >> 32)), stream)),
+      : key_(hash_combine(
+            hash_combine(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
+            stream)),
         index_(index) {}
 
+  /// The numbers of one sample from dimension pair `first_pair` on.
+  Sampler(std::uint64_t seed, std::uint32_t stream, std::uint32_t index, std::uint32_t first_pair)
+      : Sampler(seed, stream, index) {
+    dimension_ = first_pair;
+  }
+
   [[nodiscard]] Vec2f next_2d() {
-    const std::uint32_t key = hash_combine(key_, dimension_++);
-    const std::uint32_t i = owen(index_, key);
-    const std::uint32_t a = owen(reverse(i), hash32(key ^ 0x68bc21ebU));
-    const std::uint32_t b = owen(sobol1(i), hash32(key ^ 0x02e5be93U));
-    return {to_unit(a), to_unit(b)};
+    Vec2f u;
+    draw(keys(key_, dimension_++), index_, u.x(), u.y());
+    return u;
   }
   [[nodiscard]] float next_1d() { return next_2d().x(); }
 
+  /// Dimension pairs 0 and 1 of samples first_index .. first_index + count - 1 of a stream, as
+  /// Sampler has them, many at a time. \param u  room for `count` numbers of each of the four
+  /// dimensions.
+  static void fill(std::uint64_t seed, std::uint32_t stream, std::uint32_t first_index,
+                   std::size_t count, std::array<float*, 4> u);
+
  private:
+  struct Keys {
+    std::uint32_t shuffle, x, y;
+  };
+  static constexpr Keys keys(std::uint32_t key, std::uint32_t dimension) {
+    const std::uint32_t k = hash_combine(key, dimension);
+    return {k, hash32(k ^ 0x68bc21ebU), hash32(k ^ 0x02e5be93U)};
+  }
+  static constexpr void draw(const Keys& k, std::uint32_t index, float& x, float& y) {
+    const std::uint32_t i = reverse(scramble(reverse(index), k.shuffle));
+    x = to_unit(reverse(scramble(i, k.x)));
+    y = to_unit(reverse(scramble(pascal(i), k.y)));
+  }
   static constexpr float to_unit(std::uint32_t v) {
-    return static_cast<float>(v >> 8) * 0x1p-24f;
+    return static_cast<float>(static_cast<std::int32_t>(v >> 8)) * 0x1p-24f;
   }
   static constexpr std::uint32_t reverse(std::uint32_t x) {
     x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
     x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
     x = ((x >> 4) & 0x0f0f0f0fU) | ((x & 0x0f0f0f0fU) << 4);
-    return __builtin_bswap32(x);
+    x = ((x >> 8) & 0x00ff00ffU) | ((x & 0x00ff00ffU) << 8);
+    return (x >> 16) | (x << 16);
   }
-  /// Second Sobol dimension: the Pascal matrix applied to the digits of i, reversed.
-  static constexpr std::uint32_t sobol1(std::uint32_t i) {
-    std::uint32_t r = 0;
-    for (std::uint32_t v = 1U << 31; i != 0; i >>= 1, v ^= v >> 1)
-      if ((i & 1U) != 0) r ^= v;
-    return r;
+  /// Second Sobol dimension, digits reversed: the Pascal matrix modulo 2. As a polynomial the
+  /// digits i(x) become i(1 + x), and (1 + x)^m = 1 + x^m for m a power of two.
+  static constexpr std::uint32_t pascal(std::uint32_t i) {
+    i ^= i >> 16;
+    i ^= (i >> 8) & 0x00ff00ffU;
+    i ^= (i >> 4) & 0x0f0f0f0fU;
+    i ^= (i >> 2) & 0x33333333U;
+    return i ^ ((i >> 1) & 0x55555555U);
   }
-  /// Hash-based nested uniform scramble (Laine & Karras 2011) of the bits from the most significant.
-  static constexpr std::uint32_t owen(std::uint32_t x, std::uint32_t seed) {
-    x = reverse(x);
+  /// Hash-based nested uniform scramble (Laine & Karras 2011) of digits, least significant first.
+  static constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeaU;
     x += seed;
     x *= (seed >> 16) | 1U;
     x ^= x * 0x05526c56U;
     x ^= x * 0x53a22864U;
-    return reverse(x);
+    return x;
   }
 
   std::uint32_t key_;

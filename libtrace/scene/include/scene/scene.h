@@ -32,6 +32,9 @@ struct Model {
   std::vector<Camera> cameras;  ///< likewise
   std::optional<Environment> environment;
   PortalHints portals;          ///< in world coordinates
+  /// K [1/m] of the air: a medium that fills the bounds of the geometry, absorbs and does not
+  /// scatter.
+  SpectralValue medium_extinction = 0.0;
   RadianceUnit unit = RadianceUnit::Nit;
   std::vector<std::string> warnings;  ///< one line each: what was found and what was done instead
 };
@@ -65,6 +68,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::optional<Environment> environment;
   PortalHints portals;
+  SpectralValue medium_extinction = 0.0;  ///< as in Model
   RadianceUnit unit = RadianceUnit::Nit;
 
   Vec3d origin = Vec3d::Zero();  ///< world position of the scene's coordinate origin [m]

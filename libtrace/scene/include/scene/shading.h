@@ -51,21 +51,34 @@ class Shading {
   /// Closest surface; points that an alpha mask cuts out are passed.
   [[nodiscard]] std::optional<SurfacePoint> closest(const Ray& ray, Counters& counters,
                                                     Counter kind, float* distance = nullptr) const;
+  /// The same as the ray query has it; Hit::t is the distance from the ray's origin.
+  [[nodiscard]] std::optional<Hit> closest_hit(const Ray& ray, Counters& counters,
+                                               Counter kind) const;
+  /// For many rays at once; Hit::none() where there is none.
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, Counters& counters,
+                    Counter kind) const;
   /// \param wo  unit, away from the surface (minus the ray's direction).
   [[nodiscard]] Interaction<N> interact(const SurfacePoint& point, const Vec3f& wo) const;
   /// The paper's constants of the same surface.
   [[nodiscard]] material::PaperSurface<N> paper_surface(const Interaction<N>& surface) const;
   /// Share of light that goes straight along the ray: 0 behind opaque things and solids, the
-  /// product of the panes' transmittance else.
+  /// product of the panes' transmittance and that of the air else.
   [[nodiscard]] Spectrum<N> transmittance(const Ray& ray, Counters& counters, Counter kind) const;
   /// The same between a surface point and a light sample taken from it.
   [[nodiscard]] Spectrum<N> visibility(const SurfacePoint& from, const LightSample<N>& light,
                                        Counters& counters, Counter kind) const;
 
+  /// Does the air absorb? If not, through_medium() need not be asked.
+  [[nodiscard]] bool has_medium() const { return has_medium_; }
+  /// Transmittance of the air along a ray up to a distance [m], which may be infinite.
+  [[nodiscard]] Spectrum<N> through_medium(const Ray& ray, float distance) const;
+
  private:
   const RayQuery* query_;
   material::SpectralBasis basis_;
   LightSampler<N> lights_;
+  Spectrum<N> medium_;  // K of the air
+  bool has_medium_;
   std::vector<material::Material> sources_;  // what materials_ point to, for Weights::Paper
   std::vector<material::ResolvedMaterial<N>> materials_;
 
