@@ -77,6 +77,26 @@ struct SolveCommand {
   std::vector<std::string> outputs;
 };
 
+/// A parallelogram cut into cells[0] x cells[1] cells.
+struct SensorGrid {
+  std::array<double, 3> origin{}, u{}, v{};  ///< corner and edges [m]
+  std::array<int, 2> cells{};
+};
+
+struct MeasureCommand {
+  CommonOptions common;
+  SceneOptions scene;
+  SolveSettings solve;
+  // Where: one of these.
+  std::string points;  ///< file
+  std::optional<SensorGrid> grid;
+  std::optional<double> work_plane;  ///< height y [m]
+  double spacing = 0.25;             ///< of the work plane [m]
+  double error = 0.01;               ///< relative standard error of a sensor
+  std::string output;                ///< .csv .json; empty: CSV on standard output
+  std::string solution;              ///< read
+};
+
 struct InfoCommand {
   SceneOptions scene;
   bool json = false;
@@ -135,7 +155,8 @@ struct Finished {
   int code = 0;
 };
 
-using Command = std::variant<Finished, RenderCommand, SolveCommand, InfoCommand, CompareCommand,
+using Command = std::variant<Finished, RenderCommand, SolveCommand, MeasureCommand, InfoCommand,
+                             CompareCommand,
                              MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
                              MaterialShowCommand, MaterialCompareCommand>;
 

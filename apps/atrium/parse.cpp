@@ -75,9 +75,6 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
   app.add_option("--solver", t.solver, "radiosity: rows, shooting or matrix")
       ->check(CLI::IsMember({"rows", "shooting", "matrix"}))
       ->capture_default_str();
-  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
-      ->check(CLI::IsMember({"radiometric", "paper"}))
-      ->capture_default_str();
   app.add_option("--time-limit", o.time_limit, "stop computing after this time [s]; 0: none")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
@@ -85,6 +82,12 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
   app.add_option("--probes", o.probes,
                  "points where path tracing checks the radiosity and states its error; 0: none")
       ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+}
+
+void add_mode(CLI::App& app, Texts& t) {
+  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
+      ->check(CLI::IsMember({"radiometric", "paper"}))
       ->capture_default_str();
 }
 
@@ -111,6 +114,7 @@ void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
       ->check(CLI::IsMember({"hybrid", "path", "direct"}))
       ->capture_default_str();
   add_solve(app, o.solve, t);
+  add_mode(app, t);
   app.add_option("--samples", o.samples, "of a pixel; 0: from the quality (16, 64, 256)")
       ->check(CLI::Range(0, 1 << 24))
       ->capture_default_str();
@@ -201,6 +205,19 @@ void finish(SceneOptions& o, const Texts& t) {
   // 179 lm/W: the luminous efficacy of white light where watts have to become lumens (DESIGN 8).
   o.pane_detection = !t.no_pane_detection;
   o.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
+}
+
+MeasureCommand finish(MeasureCommand o, const std::vector<std::string>& grid, const CLI::App& app) {
+  if (!grid.empty()) o.grid = parse_grid(grid);
+  const int places = (o.points.empty() ? 0 : 1) + (o.grid ? 1 : 0) + (o.work_plane ? 1 : 0);
+  if (places != 1) throw Error("measure: one of --points, --grid and --workplane is required");
+  if (o.work_plane && !std::isfinite(*o.work_plane))
+    throw Error("--workplane: must be a height in metres");
+  if (!o.solution.empty())
+    for (const char* name : {"--solver", "--quality", "--time-limit"})
+      if (app.count(name) > 0)
+        throw Error(std::string(name) + ": nothing is solved with --solution");
+  return o;
 }
 
 MaterialDeriveCommand finish(MaterialDeriveCommand o, const DeriveTexts& t, const CLI::App& app) {
@@ -327,10 +344,12 @@ struct Parser {
   CLI::App app{"Atrium: light in buildings by radiosity and ray tracing", "atrium"};
   RenderCommand render;
   SolveCommand solve;
+  MeasureCommand measure;
+  std::vector<std::string> measure_grid;
   InfoCommand info;
   CompareCommand compare;
   MaterialParser material;
-  Texts render_texts, solve_texts, info_texts;
+  Texts render_texts, solve_texts, measure_texts, info_texts;
   bool print_config = false;
 
   Parser() {
@@ -343,6 +362,8 @@ struct Parser {
     app.fallthrough();
     add_render(*app.add_subcommand("render", "render a picture of a scene"), render, render_texts);
     add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
+    add_measure_command(
+        *app.add_subcommand("measure", "illuminance or irradiance at points and on grids"));
     add_info_command(*app.add_subcommand("info", "what a file contains, needs and goes without"));
     add_compare_command(*app.add_subcommand("compare", "error measures between two images"));
     material.add(*app.add_subcommand("material", "explore the material model"));
@@ -357,12 +378,41 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     add_solve(sub, solve.solve, solve_texts);
+    add_mode(sub, solve_texts);
     add_common(sub, solve.common);
+  }
+  void add_measure_command(CLI::App& sub) {
+    MeasureCommand& o = measure;
+    add_scene(sub, o.scene, measure_texts);
+    sub.add_option("--points", o.points, "sensors, one per line: x y z nx ny nz [m]")
+        ->type_name("FILE");
+    sub.add_option("--grid", measure_grid,
+                   "sensors on a parallelogram: its corner, two edges u v, and NxM cells along "
+                   "them; they look along u x v")
+        ->expected(4)
+        ->type_name("X,Y,Z U V NxM");
+    CLI::Option* plane =
+        sub.add_option("--workplane", o.work_plane,
+                       "sensors that look up, at this height y [m] in rooms: a floor below, a ceiling above")
+            ->type_name("HEIGHT");
+    sub.add_option("--spacing", o.spacing, "of the sensors of a work plane [m]")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->needs(plane)
+        ->capture_default_str();
+    sub.add_option("-o,--output", o.output, "table: .csv .json; default: CSV on standard output")
+        ->type_name("FILE");
+    sub.add_option("--error", o.error, "standard error of a sensor, as a share of its reading")
+        ->check(CLI::Range(1e-5, 1.0))
+        ->capture_default_str();
+    sub.add_option("--solution", o.solution, "use this radiosity solution instead of solving")
+        ->type_name("FILE.atrium");
+    add_solve(sub, o.solve, measure_texts);
+    add_common(sub, o.common);
   }
   void add_info_command(CLI::App& sub) {
     add_scene(sub, info.scene, info_texts);
     sub.get_option("scene")->description(
-        "scene files, put together; or one luminaire (.ies), image or solution (.atrium)");
+        "scene files, put together; or one luminaire (.ies .ldt), image or solution (.atrium)");
     sub.add_flag("--json", info.json, "for programs");
   }
   void add_compare_command(CLI::App& sub) {
@@ -421,6 +471,12 @@ Command finished_command(Parser& p, const std::string& command_line) {
     finish(p.solve.solve, p.solve_texts);
     p.solve.common.command_line = command_line;
     return p.solve;
+  }
+  if (name == "measure") {
+    finish(p.measure.scene, p.measure_texts);
+    finish(p.measure.solve, p.measure_texts);
+    p.measure.common.command_line = command_line;
+    return finish(p.measure, p.measure_grid, sub);
   }
   if (name == "info") {
     finish(p.info.scene, p.info_texts);

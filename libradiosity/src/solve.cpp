@@ -108,9 +108,11 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
         make_certificate(problem, result.field, std::hypot(result.error_estimate, result.mesh_error),
                          work, result.counters);
   result.complete = work.stopped_by().empty();
-  result.stopped_by = !result.complete               ? work.stopped_by()
-                      : solution.iteration.converged ? "tolerance"
-                                                     : "iterations";
+  result.stopped_by = !result.complete                ? work.stopped_by()
+                      : !solution.iteration.converged ? "iterations"
+                      : options.error == 0.0          ? "tolerance"
+                      : solution.error_reached        ? "error"
+                                                      : "rounds";
   result.counters[Counter::Iterations] += static_cast<std::uint64_t>(result.iterations);
   result.counters[Counter::ElementSides] += problem.sides.active.size();
 }

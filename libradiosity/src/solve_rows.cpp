@@ -479,7 +479,8 @@ class RowSolver {
     constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
     const double target = problem_.options.error;
     for (int round = 0; round < kMaxRounds; ++round) {
-      if (result_.error_estimate <= target || work_.stopped()) return;
+      result_.error_reached = result_.error_estimate <= target;
+      if (result_.error_reached || work_.stopped()) return;
       const double fixed = weighted(result_.caustic.variance);
       if (fixed > 0.5 * target * target && !more_photons()) return;
       const double rest = std::sqrt(std::max(0.25 * target * target, target * target - fixed));
@@ -503,6 +504,7 @@ class RowSolver {
       draw_gather(plans[1]);
       assemble();
     }
+    result_.error_reached = result_.error_estimate <= target;
   }
 
   /// Twice as many photons, all of them new. False at the end of their numbers.

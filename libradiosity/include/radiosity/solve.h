@@ -86,7 +86,9 @@ struct SolveResult {
   double mesh_error = 0.0;      ///< RMS of what interpolation of direct light misses, estimated
   Certificate certificate;      ///< if SolveOptions::probes asked for one
   bool complete = true;    ///< false: stopped by time or request; the field is usable all the same
-  std::string stopped_by;  ///< "tolerance", "iterations", "time limit", "interrupt"
+  /// "tolerance", or if an error was asked for "error" (reached) or "rounds" (not); "iterations",
+  /// "time limit", "memory limit", "interrupt"
+  std::string stopped_by;
 };
 
 /// Solves diffuse inter-reflection, also through panes, mirrors, solids and rough lobes.
