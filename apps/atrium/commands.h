@@ -10,6 +10,7 @@ namespace atrium::app {
 int run_render(const RenderCommand& command, std::stop_token stop);
 int run_solve(const SolveCommand& command, std::stop_token stop);
 int run_reweight(const ReweightCommand& command);
+int run_measure(const MeasureCommand& command, std::stop_token stop);
 int run_info(const InfoCommand& command, std::stop_token stop);
 int run_compare(const CompareCommand& command);
 int run_material_eval(const MaterialEvalCommand& command);

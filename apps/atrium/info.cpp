@@ -6,6 +6,7 @@
 #include "material/bsdf.h"
 #include "material/error.h"
 #include "scene/image_io.h"
+#include "scene/luminaire.h"
 #include "scene/output_file.h"
 #include "scene/scene_io.h"
 #include "scene/solution_io.h"
@@ -59,17 +60,38 @@ class Report {
   bool json_;
 };
 
+std::string opening_text(const Vec3d& size) {
+  char text[96];
+  if (size.y() > 0.0)
+    std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g", size.x(), size.y(), size.z());
+  else
+    std::snprintf(text, sizeof text, "diameter %.4g, height %.4g", size.x(), size.z());
+  return text;
+}
+
 void info_luminaire(const std::string& file, Report& r) {
-  const scene::IntensityProfile profile = scene::read_ies(file);
+  const scene::Luminaire l = scene::read_luminaire(file);
+  const scene::IntensityProfile& profile = l.profile;
   double largest = 0.0;
   for (const double c : profile.candela) largest = std::max(largest, c);
   r.add("luminaire", file);
+  r.add("name", l.name);
+  r.add("format", l.format);
+  r.add("photometric type", std::string(1, l.type));
   r.add("flux", profile.flux(), "lm");
+  if (l.stated_flux) r.add("flux as stated", *l.stated_flux, "lm");
+  if (l.lamp_flux) r.add("flux of the lamps", *l.lamp_flux, "lm");
   r.add("largest intensity", largest, "cd");
   r.add("vertical angles", static_cast<std::uint64_t>(profile.theta_deg.size()));
   r.add("horizontal angles", static_cast<std::uint64_t>(profile.phi_deg.size()));
-  r.add("symmetry",
-        std::string(profile.phi_deg.size() == 1 ? "round" : "none or planes, unfolded"));
+  r.add("symmetry", l.symmetry);
+  for (const int plane : {0, 90}) {
+    const std::string where = std::to_string(plane) + "-" + std::to_string(plane + 180);
+    r.add(("beam angle, plane " + where).c_str(), scene::opening_angle(profile, plane, 0.5), "deg");
+    r.add(("field angle, plane " + where).c_str(), scene::opening_angle(profile, plane, 0.1),
+          "deg");
+  }
+  r.add("luminous opening", opening_text(l.opening), "m");
 }
 
 void info_image(const std::string& file, Report& r) {
@@ -243,12 +265,13 @@ int run_info(const InfoCommand& c, std::stop_token stop) {
   const std::string& first = c.scene.files.front();
   const std::string ending = scene::file_ending(first);
   const bool image = scene::is_image_ending(first);
-  const bool single = image || ending == ".ies" || ending == ".atrium";
+  const bool luminaire = scene::is_luminaire_ending(first);
+  const bool single = image || luminaire || ending == ".atrium";
   if (single && c.scene.files.size() > 1) {
     throw Error(first + ": is no scene; one luminaire, image or solution at a time");
   }
   Report report(c.json);
-  if (ending == ".ies") {
+  if (luminaire) {
     info_luminaire(first, report);
   } else if (ending == ".atrium") {
     info_solution(first, report);

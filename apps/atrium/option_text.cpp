@@ -114,6 +114,30 @@ std::array<double, 4> parse_crop(const std::string& text) {
   return *n;
 }
 
+SensorGrid parse_grid(const std::vector<std::string>& words) {
+  std::string all = "--grid";
+  for (const std::string& word : words) all += " " + word;
+  const auto fail = [&](const std::string& why) { throw Error(all + ": " + why); };
+  SensorGrid grid;
+  std::array<double, 3>* const vectors[] = {&grid.origin, &grid.u, &grid.v};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto n = numbers<3>(words.at(i), ',');
+    if (!n) fail(words[i] + " is not X,Y,Z in metres");
+    *vectors[i] = *n;
+  }
+  const auto cells = numbers<2>(words.at(3), 'x');
+  const auto fits = [](double v) { return v >= 1.0 && v <= 1e6 && v == std::floor(v); };
+  if (!cells || !fits((*cells)[0]) || !fits((*cells)[1]) || (*cells)[0] * (*cells)[1] > 1e7)
+    fail(words[3] + " is not NxM, two whole numbers of at least 1 with a product up to 1e7");
+  grid.cells = {static_cast<int>((*cells)[0]), static_cast<int>((*cells)[1])};
+  const auto& [a, b, c] = grid.u;
+  const auto& [d, e, f] = grid.v;
+  const double area = std::hypot(b * f - c * e, c * d - a * f, a * e - b * d);
+  if (!(area > 1e-9 * std::hypot(a, b, c) * std::hypot(d, e, f)))
+    fail("the edges span no parallelogram");
+  return grid;
+}
+
 std::optional<double> parse_exposure(const std::string& text) {
   if (text == "auto") return std::nullopt;
   const auto n = numbers<1>(text, ' ');

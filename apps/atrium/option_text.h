@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "options.h"
+
 // Texts of the command line as values. All throw Error, one line with the text and what is valid.
 namespace atrium::app {
 
@@ -13,6 +15,8 @@ namespace atrium::app {
 [[nodiscard]] std::array<int, 2> parse_size(const std::string& text);
 /// X0,Y0,X1,Y1 as shares.
 [[nodiscard]] std::array<double, 4> parse_crop(const std::string& text);
+/// Corner and edges as X,Y,Z each, then the cells as NxM. \param words  the four words of --grid.
+[[nodiscard]] SensorGrid parse_grid(const std::vector<std::string>& words);
 /// An exposure value; nullopt: auto.
 [[nodiscard]] std::optional<double> parse_exposure(const std::string& text);
 /// Metres of a length with a unit, "0.2um"; without one it is in metres.

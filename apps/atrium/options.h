@@ -48,6 +48,8 @@ struct SolveSettings {
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
   std::uint64_t seed = 1;
+  double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
+  int probes = 0;              ///< points of the certificate
   bool paper_weights = false;  ///< --mode paper
   scene::Grouping light_groups = scene::Grouping::One;
   bool keep_state = false;  ///< a solution is written, from which a later run may go on
@@ -86,6 +88,26 @@ struct ReweightCommand {
   std::string solution;
   std::vector<std::pair<std::string, double>> factors;  ///< by group
   std::string output;
+};
+
+/// A parallelogram cut into cells[0] x cells[1] cells.
+struct SensorGrid {
+  std::array<double, 3> origin{}, u{}, v{};  ///< corner and edges [m]
+  std::array<int, 2> cells{};
+};
+
+struct MeasureCommand {
+  CommonOptions common;
+  SceneOptions scene;
+  SolveSettings solve;
+  // Where: one of these.
+  std::string points;  ///< file
+  std::optional<SensorGrid> grid;
+  std::optional<double> work_plane;  ///< height y [m]
+  double spacing = 0.25;             ///< of the work plane [m]
+  double error = 0.01;               ///< relative standard error of a sensor
+  std::string output;                ///< .csv .json; empty: CSV on standard output
+  std::string solution;              ///< read
 };
 
 struct InfoCommand {
@@ -146,7 +168,8 @@ struct Finished {
   int code = 0;
 };
 
-using Command = std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, InfoCommand, CompareCommand,
+using Command = std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, MeasureCommand,
+                             InfoCommand, CompareCommand,
                              MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
                              MaterialShowCommand, MaterialCompareCommand>;
 

@@ -76,13 +76,20 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
   app.add_option("--solver", t.solver, "radiosity: rows, shooting or matrix")
       ->check(CLI::IsMember({"rows", "shooting", "matrix"}))
       ->capture_default_str();
-  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
-      ->check(CLI::IsMember({"radiometric", "paper"}))
-      ->capture_default_str();
   app.add_option("--time-limit", o.time_limit, "stop computing after this time [s]; 0: none")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
+  app.add_option("--probes", o.probes,
+                 "points where path tracing checks the radiosity and states its error; 0: none")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+}
+
+void add_mode(CLI::App& app, Texts& t) {
+  app.add_option("--mode", t.mode, "radiometric, or paper (the model's terms literally)")
+      ->check(CLI::IsMember({"radiometric", "paper"}))
+      ->capture_default_str();
 }
 
 void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
@@ -108,6 +115,7 @@ void add_render(CLI::App& app, RenderCommand& o, Texts& t) {
       ->check(CLI::IsMember({"hybrid", "path", "direct"}))
       ->capture_default_str();
   add_solve(app, o.solve, t);
+  add_mode(app, t);
   app.add_option("--samples", o.samples, "of a pixel; 0: from the quality (16, 64, 256)")
       ->check(CLI::Range(0, 1 << 24))
       ->capture_default_str();
@@ -192,12 +200,27 @@ void finish(SolveSettings& o, const Texts& t) {
   o.solver = choose<SolverChoice>(t.solver, {{"rows", SolverChoice::Rows},
                                              {"shooting", SolverChoice::Shooting},
                                              {"matrix", SolverChoice::Matrix}});
+  if (o.error > 0.0 && o.solver != SolverChoice::Rows)
+    throw Error("--error: only solver 'rows' works towards an error");
 }
 
 void finish(SceneOptions& o, const Texts& t) {
   // 179 lm/W: the luminous efficacy of white light where watts have to become lumens (DESIGN 8).
   o.pane_detection = !t.no_pane_detection;
   o.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
+}
+
+MeasureCommand finish(MeasureCommand o, const std::vector<std::string>& grid, const CLI::App& app) {
+  if (!grid.empty()) o.grid = parse_grid(grid);
+  const int places = (o.points.empty() ? 0 : 1) + (o.grid ? 1 : 0) + (o.work_plane ? 1 : 0);
+  if (places != 1) throw Error("measure: one of --points, --grid and --workplane is required");
+  if (o.work_plane && !std::isfinite(*o.work_plane))
+    throw Error("--workplane: must be a height in metres");
+  if (!o.solution.empty())
+    for (const char* name : {"--solver", "--quality", "--time-limit"})
+      if (app.count(name) > 0)
+        throw Error(std::string(name) + ": nothing is solved with --solution");
+  return o;
 }
 
 MaterialDeriveCommand finish(MaterialDeriveCommand o, const DeriveTexts& t, const CLI::App& app) {
@@ -326,10 +349,12 @@ struct Parser {
   SolveCommand solve;
   ReweightCommand reweight;
   std::vector<std::string> reweight_factors;
+  MeasureCommand measure;
+  std::vector<std::string> measure_grid;
   InfoCommand info;
   CompareCommand compare;
   MaterialParser material;
-  Texts render_texts, solve_texts, info_texts;
+  Texts render_texts, solve_texts, measure_texts, info_texts;
   bool print_config = false;
 
   Parser() {
@@ -344,6 +369,8 @@ struct Parser {
     add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
     add_reweight_command(
         *app.add_subcommand("reweight", "dim the light groups of a solution, without a ray"));
+    add_measure_command(
+        *app.add_subcommand("measure", "illuminance or irradiance at points and on grids"));
     add_info_command(*app.add_subcommand("info", "what a file contains, needs and goes without"));
     add_compare_command(*app.add_subcommand("compare", "error measures between two images"));
     material.add(*app.add_subcommand("material", "explore the material model"));
@@ -366,6 +393,12 @@ struct Parser {
     sub.add_flag("--light-groups", solve_texts.light_groups,
                  "keep the light of each lamp name apart, for reweight; default: of each "
                  "light_group that the scene names");
+    sub.add_option("--error", solve.solve.error,
+                   "go on until the RMS of irradiance is below this share of it (0.02: 2 %); 0: "
+                   "the effort of --quality. Solver rows only")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    add_mode(sub, solve_texts);
     add_common(sub, solve.common);
   }
   void add_reweight_command(CLI::App& sub) {
@@ -380,10 +413,38 @@ struct Parser {
         ->required()
         ->type_name("FILE.atrium");
   }
+  void add_measure_command(CLI::App& sub) {
+    MeasureCommand& o = measure;
+    add_scene(sub, o.scene, measure_texts);
+    sub.add_option("--points", o.points, "sensors, one per line: x y z nx ny nz [m]")
+        ->type_name("FILE");
+    sub.add_option("--grid", measure_grid,
+                   "sensors on a parallelogram: its corner, two edges u v, and NxM cells along "
+                   "them; they look along u x v")
+        ->expected(4)
+        ->type_name("X,Y,Z U V NxM");
+    CLI::Option* plane =
+        sub.add_option("--workplane", o.work_plane,
+                       "sensors that look up, at this height y [m] in rooms: a floor below, a ceiling above")
+            ->type_name("HEIGHT");
+    sub.add_option("--spacing", o.spacing, "of the sensors of a work plane [m]")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->needs(plane)
+        ->capture_default_str();
+    sub.add_option("-o,--output", o.output, "table: .csv .json; default: CSV on standard output")
+        ->type_name("FILE");
+    sub.add_option("--error", o.error, "standard error of a sensor, as a share of its reading")
+        ->check(CLI::Range(1e-5, 1.0))
+        ->capture_default_str();
+    sub.add_option("--solution", o.solution, "use this radiosity solution instead of solving")
+        ->type_name("FILE.atrium");
+    add_solve(sub, o.solve, measure_texts);
+    add_common(sub, o.common);
+  }
   void add_info_command(CLI::App& sub) {
     add_scene(sub, info.scene, info_texts);
     sub.get_option("scene")->description(
-        "scene files, put together; or one luminaire (.ies), image or solution (.atrium)");
+        "scene files, put together; or one luminaire (.ies .ldt), image or solution (.atrium)");
     sub.add_flag("--json", info.json, "for programs");
   }
   void add_compare_command(CLI::App& sub) {
@@ -453,6 +514,12 @@ Command finished_command(Parser& p, const std::string& command_line) {
     ReweightCommand o = p.reweight;
     for (const std::string& text : p.reweight_factors) o.factors.push_back(parse_factor(text));
     return o;
+  }
+  if (name == "measure") {
+    finish(p.measure.scene, p.measure_texts);
+    finish(p.measure.solve, p.measure_texts);
+    p.measure.common.command_line = command_line;
+    return finish(p.measure, p.measure_grid, sub);
   }
   if (name == "info") {
     finish(p.info.scene, p.info_texts);

@@ -53,7 +53,26 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.light_groups = settings.light_groups;
   o.paper_weights = settings.paper_weights;
   o.time_limit = time_limit;
+  o.error = settings.error;
+  o.probes = settings.probes;
   return o;
+}
+
+ProbeSummary summarise(const radiosity::Certificate& c) {
+  ProbeSummary s;
+  s.probes = c.probes;
+  s.target = c.target;
+  s.bias = c.bias;
+  s.bias_error = c.bias_error;
+  s.rms = c.rms;
+  s.rms_low = c.rms_low;
+  s.rms_high = c.rms_high;
+  s.largest = c.largest;
+  s.noise = c.probe_noise;
+  s.verdict = radiosity::verdict_name(c.verdict);
+  s.not_sampled = c.not_sampled;
+  s.rays = c.rays;
+  return s;
 }
 
 SolveSummary summarise(const radiosity::SolveResult& r) {
@@ -62,6 +81,7 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.iterations = r.iterations;
   s.residual = r.residual;
   s.error_estimate = r.error_estimate;
+  s.mesh_error = r.mesh_error;
   s.complete = r.complete;
   s.stopped_by = r.stopped_by;
   s.emitted = r.flux.emitted;
@@ -89,6 +109,7 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                              radiosity::Previous{previous->field, previous->state});
   RadiosityRun run;
   run.summary = summarise(result);
+  if (settings.probes > 0) run.summary.certificate = summarise(result.certificate);
   if (want_mesh) {
     run.mesh =
         radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);

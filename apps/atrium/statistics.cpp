@@ -1,5 +1,6 @@
 #include "statistics.h"
 
+#include <cstdio>
 #include <fstream>
 
 #include "material/error.h"
@@ -48,6 +49,22 @@ void add_features(JsonWriter& json, const scene::Features& f) {
   json.end();
 }
 
+std::string describe(const ProbeSummary& c) {
+  const auto percent = [](double share) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g %%", 100.0 * share);
+    return std::string(text);
+  };
+  std::string line = "certificate: error of " + percent(c.target) + " " + c.verdict;
+  if (c.probes > 0)
+    line += "; RMS " + percent(c.rms) + " [" + percent(c.rms_low) + ", " + percent(c.rms_high) +
+            "], bias " + percent(c.bias) + " +- " + percent(c.bias_error) + ", largest " +
+            percent(c.largest) + ", at " + std::to_string(c.probes) + " probes with " +
+            percent(c.noise) + " noise";
+  for (const std::string& n : c.not_sampled) line += "; not measured: " + n;
+  return line;
+}
+
 namespace {
 
 void add_phases(JsonWriter& json, const PhaseClock& clock) {
@@ -69,10 +86,41 @@ void add_counters(JsonWriter& json, const scene::Counters& counters) {
   json.end();
 }
 
+void add_certificate(JsonWriter& json, const ProbeSummary& c) {
+  const bool known = c.probes > 0;
+  if (known) {
+    json.begin_array("ci");
+    json.element(c.rms_low);
+    json.element(c.rms_high);
+    json.end();
+  } else {
+    json.null("ci");
+  }
+  json.begin_object("probes");
+  json.member("count", c.probes);
+  if (known) {
+    json.member("bias", c.bias);
+    json.member("bias_error", c.bias_error);
+    json.member("rms", c.rms);
+    json.member("largest", c.largest);
+    json.member("noise", c.noise);
+  }
+  json.member("rays", c.rays);
+  json.begin_array("not_sampled");
+  for (const std::string& n : c.not_sampled) json.element(n);
+  json.end();
+  json.end();
+  json.member("verdict", c.verdict);
+}
+
 /// The error of the picture if there is one, of the radiosity otherwise.
 void add_error(JsonWriter& json, const Statistics& s) {
   json.begin_object("error");
-  json.null("target");  // none can be asked for yet
+  const ProbeSummary* c = s.solve && s.solve->certificate ? &*s.solve->certificate : nullptr;
+  if (c != nullptr)
+    json.member("target", c->target);
+  else
+    json.null("target");
   if (!s.views.empty()) {
     json.member("estimate", s.views.back().error_estimate);
   } else if (s.solve) {
@@ -80,7 +128,11 @@ void add_error(JsonWriter& json, const Statistics& s) {
   } else {
     json.null("estimate");
   }
-  json.null("ci");
+  if (s.solve) json.member("mesh", s.solve->mesh_error);
+  if (c != nullptr)
+    add_certificate(json, *c);
+  else
+    json.null("ci");
   json.end();
 }
 

@@ -12,12 +12,26 @@
 
 namespace atrium::app {
 
+/// What path-traced probes say of a solution (radiosity::Certificate).
+struct ProbeSummary {
+  int probes = 0;
+  double target = 0.0;
+  double bias = 0.0, bias_error = 0.0;
+  double rms = 0.0, rms_low = 0.0, rms_high = 0.0;
+  double largest = 0.0, noise = 0.0;
+  std::string verdict;
+  std::vector<std::string> not_sampled;
+  std::uint64_t rays = 0;
+};
+
 /// What a radiosity pass did, in plain numbers.
 struct SolveSummary {
   std::size_t elements = 0;
   int iterations = 0;
   double residual = 0.0;
   double error_estimate = 0.0;
+  double mesh_error = 0.0;
+  std::optional<ProbeSummary> certificate;
   bool complete = true;
   std::string stopped_by;
   double emitted = 0.0, absorbed = 0.0, escaped = 0.0, in_medium = 0.0, flux_error = 0.0;
@@ -33,6 +47,9 @@ struct ViewSummary {
   bool complete = true;
   std::vector<std::string> files;
 };
+
+/// One line for people.
+[[nodiscard]] std::string describe(const ProbeSummary& certificate);
 
 /// Content of a --stats file.
 struct Statistics {

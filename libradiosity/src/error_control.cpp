@@ -89,30 +89,33 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
     for (std::size_t g = group.value_or(0); g < (group ? *group + 1 : tally.groups()); ++g)
       value[i] += static_cast<double>(tally.mean(i, g).mean());
   std::vector<double> scale(problem.side_count(), 0.0);     // squared
-  std::vector<double> relative(problem.side_count(), 0.0);  // variance over scale
+  std::vector<double> own(problem.side_count(), 0.0);
   double all = 0.0;
-  double count = 0.0;
+  double all_scale = 0.0;
   for (const SideIndex i : active) {
     const double mean = local_mean<N>(neighbours, i, [&](SideIndex j) { return value[j]; });
     scale[i] = mean * mean;
-    if (!(scale[i] > 0.0) || tally.valid(i) == 0) continue;
-    const double variance = group ? tally.variance(i, *group) : tally.variance(i);
-    relative[i] = variance * tally.valid(i) / scale[i];
-    all += relative[i];
-    count += 1.0;
+    if (tally.valid(i) == 0) scale[i] = 0.0;
+    own[i] = (group ? tally.variance(i, *group) : tally.variance(i)) * tally.valid(i);
+    all += own[i];
+    all_scale += scale[i];
   }
   std::vector<double> result(problem.side_count(), 0.0);
   for (const SideIndex i : active) {
+    // A ratio of sums: relative variances of nearly dark sides are wild.
     double sum = 0.0;
-    double near = 0.0;
+    double sum_scale = 0.0;
     const auto take = [&](SideIndex j) {
-      if (tally.valid(j) == 0 || !(scale[j] > 0.0)) return;
-      sum += relative[j];
-      near += 1.0;
+      sum += own[j];
+      sum_scale += scale[j];
     };
     if (whose == Samples::All) take(i);
     neighbours.visit(i, take);
-    result[i] = scale[i] * (near > 0.0 ? sum / near : count > 0.0 ? all / count : 0.0);
+    if (!(sum_scale > 0.0)) {
+      sum = all;
+      sum_scale = all_scale;
+    }
+    result[i] = sum_scale > 0.0 ? scale[i] * sum / sum_scale : 0.0;
   }
   return result;
 }

@@ -11,6 +11,8 @@ template <int N>
 struct PathEnd {
   Spectrum<N> escaped;        ///< weight that left the scene
   Spectrum<N> in_medium;      ///< weight that the air took
+  Vec3f direction = Vec3f::Zero();  ///< ... in this direction
+  bool specular = false;            ///< the path met more than straight passages through panes
   bool inside_solid = false;  ///< the first surface was the inner face of a closed opaque body
 };
 
@@ -72,6 +74,22 @@ struct Landing {
   return !front && closed_opaque[hit.object.value] != 0;
 }
 
+/// What follow() needs of a world without elements: every diffuse surface is met, shaded.
+template <int N>
+struct Surfaces {
+  const scene::Shading<N>& shading;
+  struct {
+    std::vector<std::uint8_t> closed_opaque, plain;
+  } sides;
+
+  Surfaces(const scene::Shading<N>& s, std::vector<std::uint8_t> closed_opaque)
+      : shading(s),
+        sides{std::move(closed_opaque), std::vector<std::uint8_t>(s.scene().objects.size(), 0)} {}
+  [[nodiscard]] SideIndex side_at(scene::ObjectId, std::uint32_t, const Vec3f&, scene::Side) const {
+    return 0;
+  }
+};
+
 /// Takes off what the air absorbs, of which it lets `transmittance` pass.
 template <int N>
 void pass_medium(const Spectrum<N>& transmittance, Spectrum<N>& weight, PathEnd<N>& end) {
@@ -80,16 +98,17 @@ void pass_medium(const Spectrum<N>& transmittance, Spectrum<N>& weight, PathEnd<
 }
 
 /// A path that meets nothing any more.
-template <int N>
-void escape(const Problem<N>& problem, const scene::Ray& ray, Spectrum<N> weight, PathEnd<N>& end) {
+template <int N, class World>
+void escape(const World& problem, const scene::Ray& ray, Spectrum<N> weight, PathEnd<N>& end) {
   if (problem.shading.has_medium())
     pass_medium(problem.shading.through_medium(ray, ray.tmax), weight, end);
   end.escaped = weight;
+  end.direction = ray.direction;
 }
 
 /// The end of a path on an object of Sides::plain. \param first  it is the path's first surface.
-template <int N, class OnDiffuse>
-void land(const Problem<N>& problem, const scene::Ray& ray, const scene::Hit& hit,
+template <int N, class World, class OnDiffuse>
+void land(const World& problem, const scene::Ray& ray, const scene::Hit& hit,
           const Spectrum<N>& weight, bool first, PathEnd<N>& end, OnDiffuse&& on_diffuse,
           bool specular = false) {
   const bool front = ray.direction.dot(hit.ng) <= 0.0f;
@@ -108,20 +127,31 @@ void land(const Problem<N>& problem, const scene::Ray& ray, const scene::Hit& hi
                weight);
 }
 
+/// For paths that do not care about surfaces as such.
+struct IgnoreSurface {
+  template <class... Arguments>
+  void operator()(Arguments&&...) const {}
+};
+
 /// Follows light from a diffuse surface (or from a light, Transport::Flux) through panes, mirrors,
 /// solids and lobes. At every active side that it meets on_diffuse(landing, weight) takes the whole
 /// weight; where the surface also has a specular part the path goes on with that, chosen by
 /// sampling, with Russian roulette for weak paths.
 /// \param hit  the first surface on the ray.
-template <int N, class OnDiffuse>
-PathEnd<N> follow_from(const Problem<N>& problem, scene::Ray ray, scene::Hit hit,
+/// \param problem  Problem, or what else has `shading`, `sides.plain`, `sides.closed_opaque` and
+/// `side_at`.
+/// \param on_surface  (interaction, weight, specular) at every surface that is not plain, before its
+/// part in light.
+template <int N, class World, class OnDiffuse, class OnSurface = IgnoreSurface>
+PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit,
                        Spectrum<N> weight, scene::Sampler& sampler, material::Transport transport,
-                       scene::Counter kind, scene::Counters& counters, OnDiffuse&& on_diffuse) {
+                       scene::Counter kind, scene::Counters& counters, OnDiffuse&& on_diffuse,
+                       OnSurface&& on_surface = {}) {
   constexpr int kMaxDepth = 256;  // only total reflection without loss gets near
   const scene::Shading<N>& shading = problem.shading;
   PathEnd<N> end;
   MediumStack<N> media;
-  bool specular = false;
+  bool& specular = end.specular;
   for (int depth = 0; depth < kMaxDepth; ++depth) {
     if (depth > 0) {
       const auto next = shading.closest_hit(ray, counters, kind);
@@ -147,6 +177,7 @@ PathEnd<N> follow_from(const Problem<N>& problem, scene::Ray ray, scene::Hit hit
       end.inside_solid = true;
       return end;
     }
+    on_surface(at, weight, specular);
     const Vec3f wo = at.to_local(wo_world);
     if (at.bsdf.has(material::kDiffuseEvents)) {
       const SideIndex side = problem.side_at(hit.object, hit.triangle, point.position, at.side);
@@ -180,17 +211,18 @@ PathEnd<N> follow_from(const Problem<N>& problem, scene::Ray ray, scene::Hit hit
 }
 
 /// follow_from() with the first surface to be found.
-template <int N, class OnDiffuse>
-PathEnd<N> follow(const Problem<N>& problem, const scene::Ray& ray, const Spectrum<N>& weight,
+template <int N, class World, class OnDiffuse, class OnSurface = IgnoreSurface>
+PathEnd<N> follow(const World& problem, const scene::Ray& ray, const Spectrum<N>& weight,
                   scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
-                  scene::Counters& counters, OnDiffuse&& on_diffuse) {
+                  scene::Counters& counters, OnDiffuse&& on_diffuse, OnSurface&& on_surface = {}) {
   const auto hit = problem.shading.closest_hit(ray, counters, kind);
   if (!hit) {
     PathEnd<N> end;
     escape(problem, ray, weight, end);
     return end;
   }
-  return follow_from<N>(problem, ray, *hit, weight, sampler, transport, kind, counters, on_diffuse);
+  return follow_from<N>(problem, ray, *hit, weight, sampler, transport, kind, counters, on_diffuse,
+                        on_surface);
 }
 
 }  // namespace atrium::radiosity

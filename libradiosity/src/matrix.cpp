@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "material/error.h"
+#include "occluders.h"
 #include "patches.h"
 #include "solvers.h"
 
@@ -17,6 +18,7 @@ using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t kLargestMatrix = 3000;
 constexpr std::size_t kMostEmitterPairs = 2000000;
+constexpr double kVisibilityRays = 4e6;  // of all pairs that something may stand between, about
 constexpr int kDirectFactor = 16;  // samples of lights that are not surfaces, times direct_samples
 
 template <int N>
@@ -28,7 +30,8 @@ class MatrixSolver {
         work_(work),
         counters_(counters),
         result_(problem),
-        size_(problem.sides.active.size()) {
+        size_(problem.sides.active.size()),
+        occluders_(scene_) {
     require_diffuse(problem, "matrix");
     if (size_ > kLargestMatrix)
       throw Error("radiosity: solver 'matrix' holds at most " + std::to_string(kLargestMatrix) +
@@ -55,7 +58,12 @@ class MatrixSolver {
   struct Emitter {
     Patch patch;
     Spectrum<N> exitance;
-    double received = 0.0;  // by all elements, lane mean
+    double received = 0.0;  // A F [m^2], summed over all elements
+    [[nodiscard]] double mean_exitance() const {
+      double sum = 0.0;
+      for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(exitance[lane]);
+      return sum / N;
+    }
   };
 
   std::vector<Emitter> emitters() const {
@@ -97,14 +105,27 @@ class MatrixSolver {
               });
     for (std::size_t e = 0; e < emitters_.size(); ++e)
       for (std::size_t k = 0; k < size_; ++k) emitters_[e].received += received[e * size_ + k];
+    add_emitters(received);
   }
 
-  double receive(std::size_t k, std::size_t e, Counters& counters) {
-    const Emitter& emitter = emitters_[e];
-    const double area = exchange_area(patches_[k], emitter.patch, k, size_ + e, counters);
-    result_.direct.irradiance.plain[problem_.sides.active[k]] +=
-        emitter.exitance * static_cast<float>(area / patches_[k].area);
-    return static_cast<double>(emitter.exitance.mean()) * area;
+  /// Fields are stored in single precision; the system and the balance need more.
+  void add_emitters(const std::vector<double>& received) {
+    direct_ = Matrix::Zero(static_cast<Eigen::Index>(size_), N);
+    for (std::size_t k = 0; k < size_; ++k) {
+      Spectrum<N>& stored = result_.direct.irradiance.plain[problem_.sides.active[k]];
+      for (int lane = 0; lane < N; ++lane) {
+        double& e = direct_(static_cast<Eigen::Index>(k), lane);
+        e = static_cast<double>(stored[lane]);
+        for (std::size_t j = 0; j < emitters_.size(); ++j)
+          e += static_cast<double>(emitters_[j].exitance[lane]) * received[j * size_ + k] /
+               patches_[k].area;
+        stored[lane] = static_cast<float>(e);
+      }
+    }
+  }
+
+  double receive(std::size_t k, std::size_t e, Counters& counters) const {
+    return exchange_area(patches_[k], emitters_[e].patch, k, size_ + e, counters);
   }
 
   void exchange_areas() {
@@ -124,17 +145,17 @@ class MatrixSolver {
     return free > 0.0 ? free * visible_share(a, b, i, j, counters) : 0.0;
   }
 
-  /// Share of the exchange that nothing blocks. A few rays decide clear cases; where they differ,
-  /// many more are weighted with the kernel.
+  /// Share of the exchange that nothing blocks: all of it where nothing can stand between, else by
+  /// rays weighted with the kernel. As many for every pair: to stop early where the first agree
+  /// would round shares near 0 and 1 away, and with them the sums of rows.
   double visible_share(const Patch& a, const Patch& b, std::size_t i, std::size_t j,
                        Counters& counters) const {
+    if (!occluders_.may_block(a, b)) return 1.0;
     const double pairs = static_cast<double>(size_ * size_) * 0.5 + 1.0;
-    const int few = static_cast<int>(std::clamp(1e6 / pairs, 4.0, 256.0));
-    const int many = static_cast<int>(std::clamp(2e7 / pairs, 256.0, 65536.0));
+    const int rays = static_cast<int>(std::clamp(kVisibilityRays / pairs, 16.0, 65536.0));
     double seen = 0.0;
     double all = 0.0;
-    for (int k = 0; k < many; ++k) {
-      if (k == few && (seen == 0.0 || seen == all)) break;
+    for (int k = 0; k < rays; ++k) {
       scene::Sampler sampler(problem_.options.seed + i, static_cast<std::uint32_t>(j),
                              static_cast<std::uint32_t>(k));
       const scene::SurfacePoint p = sample_patch(scene_, problem_.points, a, sampler.next_2d());
@@ -171,8 +192,8 @@ class MatrixSolver {
       const auto row = static_cast<Eigen::Index>(k);
       system.row(row) -= rho * f.row(row);
       if (other) system.row(row) -= tau * f.row(static_cast<Eigen::Index>(*other));
-      right[row] = rho * static_cast<double>(result_.direct.irradiance.plain[i][lane]) +
-                   tau * static_cast<double>(result_.direct.irradiance.plain[i ^ 1U][lane]);
+      right[row] = rho * direct_(row, lane);
+      if (other) right[row] += tau * direct_(static_cast<Eigen::Index>(*other), lane);
     }
     const Eigen::VectorXd b = system.partialPivLu().solve(right);
     const double limit = 1e7 * (right.cwiseAbs().maxCoeff() + 1e-300);
@@ -182,10 +203,11 @@ class MatrixSolver {
           "solution");
     radiosity_.conservativeResize(n, N);
     radiosity_.col(lane) = b;
-    const Eigen::VectorXd indirect = f * b;
+    indirect_.conservativeResize(n, N);
+    indirect_.col(lane) = f * b;
     for (std::size_t k = 0; k < size_; ++k)
       result_.indirect.irradiance.plain[problem_.sides.active[k]][lane] =
-          static_cast<float>(indirect[static_cast<Eigen::Index>(k)]);
+          static_cast<float>(indirect_(static_cast<Eigen::Index>(k), lane));
   }
 
   /// Active sides are ascending, so the other side of an element is next to it.
@@ -204,9 +226,8 @@ class MatrixSolver {
     if (only_emitters_) {
       f.emitted = 0.0;
       for (const Emitter& e : emitters_) {
-        const double flux = static_cast<double>(e.exitance.mean()) * e.patch.area;
-        f.emitted += flux;
-        f.escaped += flux - e.received;
+        f.emitted += e.mean_exitance() * e.patch.area;
+        f.escaped += e.mean_exitance() * (e.patch.area - e.received);
       }
     } else {
       const Photons<N> photons = trace_photons(problem_, work_, counters_);
@@ -218,9 +239,20 @@ class MatrixSolver {
     for (std::size_t k = 0; k < size_; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
       f.escaped += radiosity_.row(row).mean() * (patches_[k].area - exchange_.row(row).sum());
-      f.absorbed +=
-          patches_[k].area * absorbed_per_area(problem_, result_, problem_.sides.active[k]);
+      f.absorbed += patches_[k].area * absorbed(k);
     }
+  }
+
+  /// Flux per area, lane mean, that side k keeps; in double precision.
+  double absorbed(std::size_t k) const {
+    const SideIndex i = problem_.sides.active[k];
+    const auto row = static_cast<Eigen::Index>(k);
+    double sum = 0.0;
+    for (int lane = 0; lane < N; ++lane)
+      sum += (direct_(row, lane) + indirect_(row, lane)) *
+             (1.0 - static_cast<double>(problem_.sides.reflectance[i][lane]) -
+              static_cast<double>(problem_.sides.transmittance[i ^ 1U][lane]));
+    return sum / N;
   }
 
   double& at(std::size_t i, std::size_t j) {
@@ -233,10 +265,11 @@ class MatrixSolver {
   Counters& counters_;
   Solution<N> result_;
   std::size_t size_;
+  Occluders occluders_;
   std::vector<Patch> patches_;
   std::vector<Emitter> emitters_;
-  Matrix exchange_;   ///< A_i F_ij, symmetric
-  Matrix radiosity_;  ///< sides x lanes
+  Matrix exchange_;                       ///< A_i F_ij, symmetric
+  Matrix direct_, indirect_, radiosity_;  ///< sides x lanes
   bool always_contours_ = true;
   bool only_emitters_ = false;
 };

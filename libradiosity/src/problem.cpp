@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
-#include "follow.h"
+#include "closed_bodies.h"
 
 namespace atrium::radiosity {
 
-using scene::Counter;
-using scene::Counters;
 using scene::ObjectId;
 using scene::Side;
 using scene::SurfaceField;
@@ -103,10 +101,7 @@ class SideProperties {
     const bool colours = !shading_.scene().meshes[object.mesh.value].colors.empty();
     const int count = any_texture(material) || colours ? 16 : 1;
     for (const Side side : {Side::Front, Side::Back}) {
-      if (side == Side::Back &&
-          (sides.closed_opaque[piece.object.value] != 0 || material.source->one_sided))
-        continue;
-      average(sides, element, side, count);
+      if (is_outside(shading_, sides, piece.object, side)) average(sides, element, side, count);
     }
   }
 
@@ -137,36 +132,6 @@ class SideProperties {
   const ElementPoints& points_;
   std::uint64_t seed_;
 };
-
-/// Closed opaque bodies whose inside light reaches directly are rooms, not solids: their inner
-/// faces take part. Decided by the first surfaces that light from the sources meets.
-template <int N>
-void find_closed_bodies(const scene::Shading<N>& shading, Sides<N>& sides) {
-  const scene::Scene& scene = shading.scene();
-  sides.closed_opaque.assign(scene.objects.size(), 0);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const material::Material& m = scene.material_of(ObjectId(i));
-    const material::MaterialTraits t = material::traits(m);
-    sides.closed_opaque[i] = scene.mesh_of(ObjectId(i)).closed &&
-                             m.medium == material::Material::Medium::Opaque &&
-                             !t.diffuse_transmission && !t.alpha_mask;
-  }
-  Counters unused;
-  std::vector<std::uint32_t> inner(scene.objects.size(), 0);
-  constexpr std::uint32_t kProbes = 4096;
-  for (std::uint32_t i = 0; i < kProbes && !shading.lights().empty(); ++i) {
-    scene::Sampler sampler(0x5eed, 0, i);
-    const float choice = sampler.next_1d();
-    const Vec2f position = sampler.next_2d();
-    const auto e = shading.lights().sample_emission(choice, position, sampler.next_2d());
-    if (!e) continue;
-    const auto hit = shading.closest({e->origin, e->direction}, unused, Counter::RaysProbe);
-    if (hit && hit->ng.dot(e->direction) > 0.0f) ++inner[hit->object.value];
-  }
-  // A stray ray through a crack makes no room; one in a thousand is a lamp inside.
-  for (std::size_t i = 0; i < inner.size(); ++i)
-    if (inner[i] > kProbes / 1000) sides.closed_opaque[i] = 0;
-}
 
 /// Objects of which a Bsdf without any point in mind says all.
 template <int N>
@@ -216,7 +181,7 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
   sides.reflectance.assign(n, {});
   sides.transmittance.assign(n, {});
   sides.coupled.assign(n / 2, 0);
-  find_closed_bodies(shading, sides);
+  sides.closed_opaque = closed_opaque_bodies(shading);
   sides.plain = find_plain(shading);
   const SideProperties<N> properties(shading, elements, points, options.seed);
   scene::parallel_for(n / 2, 1024, [&](std::size_t begin, std::size_t end) {

@@ -75,6 +75,16 @@ struct Sides {
   std::vector<std::uint8_t> plain;
 };
 
+/// May a side of an object's surface take part? Diffuse light at the inner faces of solids and at
+/// the backs of one-sided surfaces is lost.
+template <int N>
+[[nodiscard]] bool is_outside(const scene::Shading<N>& shading, const Sides<N>& sides,
+                              scene::ObjectId object, scene::Side side) {
+  if (side == scene::Side::Front) return true;
+  const scene::MaterialId material = shading.scene().objects[object.value].material;
+  return sides.closed_opaque[object.value] == 0 && !shading.material(material).source->one_sided;
+}
+
 /// Everything that the passes share and none of them changes.
 template <int N>
 struct Problem {

@@ -1,6 +1,4 @@
 #include "patches.h"
-#include "polygon.h"
-#include "radiosity/form_factor.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -36,7 +34,7 @@ class ShootingSolver {
     shoot_all();
     add_ambient();
     // Hemisphere rays count what escapes; the exchange itself does not need them.
-    constexpr int kEscapeRays = 16;
+    constexpr int kEscapeRays = 256;
     const Rows<N> rows =
         trace_rows<N>(problem_, {}, {}, std::vector<std::uint8_t>(problem_.sides.active.size(), 1), 0,
                       kEscapeRays, work_, counters_);
@@ -95,41 +93,36 @@ class ShootingSolver {
     }
   }
 
-  /// Mean over a few points of side j of the exact factor to the shooter, each with a shadow ray
-  /// to another point of it.
+  /// Exact factor from side j to the shooter times the share of it that a few shadow rays find
+  /// free, weighted with the kernel. Where nothing stands between, nothing is sampled: the factors
+  /// of a convex room sum to 1.
   double factor(SideIndex j, const Patch& shooter, Counters& counters) const {
-    constexpr std::uint32_t kPoints = 4;
+    constexpr std::uint32_t kRays = 4;
     const float sign = side_of(j) == scene::Side::Front ? 1.0f : -1.0f;
-    double sum = 0.0;
-    for (std::uint32_t k = 0; k < kPoints; ++k) {
+    const float shooter_sign = shooter.back ? -1.0f : 1.0f;
+    double all = 0.0;
+    double free = 0.0;
+    for (std::uint32_t k = 0; k < kRays; ++k) {
       scene::Sampler sampler(problem_.options.seed + shots_, j, k);
       const scene::SurfacePoint p = problem_.points.sample(j / 2, sampler.next_2d());
-      const Vec3d normal = (sign * p.ng).template cast<double>();
-      double f = 0.0;
-      // Points of the shooter's own plane may lie before it by rounding.
-      const double least = 4.0 * static_cast<double>(p.error) + 1e-6 * shooter.radius;
-      for (const auto& polygon : shooter.polygons) {
-        const Vec3d facing = polygon_area_vector(polygon).normalized();
-        if (facing.dot(p.position.cast<double>() - polygon[0]) > least)
-          f += point_to_polygon(p.position.cast<double>(), normal, polygon);
-      }
-      if (!(f > 1e-12)) continue;
-      sum += f * visibility(p, sign, shooter, sampler.next_2d(), counters);
+      const scene::SurfacePoint q =
+          sample_patch(problem_.shading.scene(), problem_.points, shooter, sampler.next_2d());
+      const Vec3f d = q.position - p.position;
+      const float here = sign * p.ng.dot(d);
+      const float there = -shooter_sign * q.ng.dot(d);
+      if (!(here > 0.0f) || !(there > 0.0f)) continue;
+      const float distance = d.norm();
+      const double kernel =
+          static_cast<double>(here * there) / std::pow(static_cast<double>(distance), 4);
+      all += kernel;
+      const Vec3f w = d / distance;
+      const scene::Ray ray{scene::offset_origin(p, w), w, 0.0f, distance * (1.0f - 1e-4f)};
+      free += kernel * static_cast<double>(
+                           problem_.shading.transmittance(ray, counters, Counter::RaysRow).mean());
     }
-    return sum / kPoints;
-  }
-
-  double visibility(const scene::SurfacePoint& p, float sign, const Patch& shooter, const Vec2f& u,
-                    Counters& counters) const {
-    const scene::SurfacePoint q =
-        sample_patch(problem_.shading.scene(), problem_.points, shooter, u);
-    const Vec3f d = q.position - p.position;
-    const float distance = d.norm();
-    if (!(d.dot(p.ng) * sign > 0.0f) || !(distance > 0.0f)) return 0.0;
-    const Vec3f w = d / distance;
-    const scene::Ray ray{scene::offset_origin(p, w), w, 0.0f, distance * (1.0f - 1e-4f)};
-    return static_cast<double>(
-        problem_.shading.transmittance(ray, counters, Counter::RaysRow).mean());
+    if (!(free > 0.0)) return 0.0;
+    const Patch receiver = element_patch(problem_.elements, j);
+    return free / all * unoccluded_exchange_area(receiver, shooter, false) / receiver.area;
   }
 
   /// What was not shot, spread over the sides that light reached, with its further bounces.

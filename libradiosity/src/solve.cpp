@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "adapt_mesh.h"
+#include "certificate.h"
 #include "material/error.h"
 #include "solvers.h"
 #include "state_head.h"
@@ -167,10 +168,16 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   result.residual = solution.iteration.residual;
   result.iterations = solution.iteration.iterations;
   result.error_estimate = solution.error_estimate;
+  if (options.probes > 0)
+    result.certificate =
+        make_certificate(problem, result.field, std::hypot(result.error_estimate, result.mesh_error),
+                         work, result.counters);
   result.complete = work.stopped_by().empty();
-  result.stopped_by = !result.complete               ? work.stopped_by()
-                      : solution.iteration.converged ? "tolerance"
-                                                     : "iterations";
+  result.stopped_by = !result.complete                ? work.stopped_by()
+                      : !solution.iteration.converged ? "iterations"
+                      : options.error == 0.0          ? "tolerance"
+                      : solution.error_reached        ? "error"
+                                                      : "rounds";
   result.counters[Counter::Iterations] += static_cast<std::uint64_t>(result.iterations);
   result.counters[Counter::ElementSides] += problem.sides.active.size();
 }

@@ -736,9 +736,11 @@ class RowSolver {
   void reach_error() {
     constexpr int kMaxRounds = 12;
     for (; round_ < kMaxRounds; ++round_) {
-      if (result_.error_estimate <= problem_.options.error || work_.stopped()) return;
-      if (!plan_round() || !finish_round()) return;
+      result_.error_reached = result_.error_estimate <= problem_.options.error;
+      if (result_.error_reached || work_.stopped()) return;
+      if (!plan_round() || !finish_round()) break;
     }
+    result_.error_reached = result_.error_estimate <= problem_.options.error;
   }
 
   /// Says what the next round has to draw; false if nothing.

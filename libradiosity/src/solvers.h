@@ -24,6 +24,7 @@ struct Solution {
   FluxBalance flux;
   Iteration iteration;
   double error_estimate = 0.0;
+  bool error_reached = false;  ///< that was asked for
 
   explicit Solution(const Problem<N>& problem)
       : direct(problem.side_count(), problem.sides.any_coupled),

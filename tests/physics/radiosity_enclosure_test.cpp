@@ -1,4 +1,4 @@
-// Closed rooms whose answer is exact (VERIFICATION 3.2).
+// Closed rooms whose answer is exact; more of them in apps/validation.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -15,33 +15,6 @@ using test::Solved;
 
 constexpr double kPi = std::numbers::pi;
 const auto everywhere = [](std::size_t) { return true; };
-
-// Cube, one constant element per face, face 0 emits exitance 1: B from the 6 x 6 system with the
-// closed-form factors.
-TEST(Matrix, CubeOfConstantElements) {
-  struct Case {
-    double rho, emitter, opposite, side;
-  };
-  for (const auto& c :
-       {Case{0.5, 1.090909, 0.181746, 0.181836}, Case{0.8, 1.551724, 0.689551, 0.689681},
-        Case{0.95, 4.033613, 3.193160, 3.193307}}) {
-    SCOPED_TRACE(c.rho);
-    SceneMaker maker;
-    const auto white = maker.material(test::diffuse(c.rho));
-    const auto lamp = maker.material(test::emitter(1.0 / kPi, c.rho));
-    maker.room({0, 0, 0}, {1, 1, 1}, {lamp, white, white, white, white, white});
-    const Solved s(maker.take(), {.solver = Solver::Matrix, .element_size = 10.0});
-    ASSERT_EQ(s.count(), 6U);
-    // Table values have 6 digits after the point.
-    EXPECT_NEAR(1.0 + c.rho * s.total(0), c.emitter, 3e-6);
-    EXPECT_NEAR(c.rho * s.total(1), c.opposite, 3e-6);
-    for (const std::size_t e : {2U, 3U, 4U, 5U}) EXPECT_NEAR(c.rho * s.total(e), c.side, 3e-6);
-    const FluxBalance& f = s.result.flux;
-    EXPECT_NEAR(f.emitted, 1.0, 1e-6);
-    EXPECT_NEAR(f.absorbed, 1.0, 2e-6);  // floats of the stored irradiance
-    EXPECT_NEAR(f.escaped, 0.0, 2e-6 / (1.0 - c.rho));
-  }
-}
 
 // Any closed room of uniform reflectance: the area mean of total irradiance is Phi / (A (1 - rho))
 // and that of the indirect part rho times it, whatever the light.
@@ -99,26 +72,6 @@ TEST(Rows, IndirectInASphereIsUniform) {
   EXPECT_NEAR(mean.value, exact, 4 * mean.error / (1.0 - rho));
   // 320 rays of an integrand that varies fivefold: about 1 %; elements are 0.4 m wide.
   EXPECT_LT(std::sqrt(squares / area), 0.02);
-}
-
-// Only what the room holds counts: moved, turned, scaled (irradiance as 1 / scale^2).
-TEST(Rows, MotionAndScaleDoNotMatter) {
-  const auto solved = [](double scale, const Vec3f& shift) {
-    SceneMaker maker;
-    const auto m = maker.material(test::diffuse(0.5));
-    const auto f = static_cast<float>(scale);
-    maker.room(shift, shift + f * Vec3f(3, 2, 2), m);
-    maker.point_light(shift.cast<double>() + scale * Vec3d(1, 1, 1.2), 5.0);
-    const Solved s(maker.take(), {.element_size = 0.25 * scale});
-    return s.mean([&](std::size_t e) { return s.indirect(e); },
-                  [&](std::size_t e) { return s.object(e) == 4; });
-  };
-  const auto base = solved(1.0, Vec3f::Zero());
-  for (const double scale : {1e-3, 1.0, 1e3}) {
-    SCOPED_TRACE(scale);
-    const auto other = solved(scale, Vec3f(10, -20, 5) * static_cast<float>(scale));
-    EXPECT_NEAR(other.value * scale * scale, base.value, 6 * base.error);
-  }
 }
 
 // One thread or two: the same bits.

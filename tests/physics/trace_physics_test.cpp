@@ -117,6 +117,41 @@ TEST(PathTracer, DirectLightOfASquareMatchesTheFormFactor) {
   EXPECT_LT(p.error, 0.005);
 }
 
+// A room with one glazed window under a clear sky: its floor has the same light by path tracing
+// with portals and without, and with them a good deal less noise.
+TEST(PathTracer, PortalsChangeTheNoiseOfARoomAndNotItsLight) {
+  Picture picture_with[2];
+  for (const bool portals : {false, true}) {
+    SceneMaker s;
+    const auto wall = s.diffuse(0.5);
+    s.quad(wall, {0, 0, 0}, {0, 0, 4}, {5, 0, 0});
+    s.quad(wall, {0, 3, 0}, {5, 0, 0}, {0, 0, 4});
+    s.quad(wall, {5, 0, 0}, {0, 0, 4}, {0, 3, 0});
+    s.quad(wall, {0, 0, 0}, {5, 0, 0}, {0, 3, 0});
+    s.quad(wall, {0, 0, 4}, {0, 3, 0}, {5, 0, 0});
+    s.quad(wall, {0, 0, 0}, {0, 1, 0}, {0, 0, 4});
+    s.quad(wall, {0, 2.2, 0}, {0, 0.8, 0}, {0, 0, 4});
+    s.quad(wall, {0, 1, 0}, {0, 1.2, 0}, {0, 0, 1});
+    s.quad(wall, {0, 1, 3}, {0, 1.2, 0}, {0, 0, 1});
+    Material glass;
+    glass.medium = Material::Medium::Pane;
+    glass.n = 1.52;
+    glass.k_df = 0.0;
+    glass.k_rg = glass.k_tp_rg = 1.0;
+    s.quad(s.material(glass), {0, 1, 1}, {0, 1.2, 0}, {0, 0, 2});
+    scene::Environment& sky = s.model().environment.emplace();
+    sky.radiance = 100.0;
+    sky.pattern = scene::SkyDome(scene::cie_sky(12), Vec3d(0.3, 0.8, 0.4).normalized(), 0.2);
+    s.model().portals.find = portals;
+    picture_with[portals ? 1 : 0] =
+        picture(s.build(), camera_at({2.5, 2.9, 2.0}, {2.5, 0, 2.01}, 0.8), path_options(16, 256));
+  }
+  const auto& [without, with] = picture_with;
+  EXPECT_NEAR(with.mean, without.mean, 4.0 * std::hypot(with.error, without.error));
+  EXPECT_GT(with.mean, 0.1);
+  EXPECT_LT(with.error, 0.5 * without.error);
+}
+
 // Point light: E = I cos / r^2 (CIE 171, 5.2), through a pane times T of the pane.
 TEST(PathTracer, PointLightFollowsInverseSquareAndPanesTransmit) {
   for (const bool with_pane : {false, true}) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "material/spectral_basis.h"
@@ -49,6 +50,7 @@ struct SolveOptions {
   Keep keep = Keep::Nothing;  ///< solver Rows only
   scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
   bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
+  int probes = 0;  ///< points of the Certificate; 0: none is made
 };
 
 /// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + in_medium within their errors.
@@ -59,6 +61,29 @@ struct FluxBalance {
   double in_medium = 0.0;  ///< counted where the air absorbs (Scene::medium_extinction)
   double standard_error = 0.0;
 };
+
+/// What points measured by path tracing, which knows nothing of elements or of the solution, say of
+/// the interpolated field. Errors are relative to the irradiance that was measured, with the floor
+/// of SolveOptions::error; points lie on the lit sides, uniform by area. Intervals are of 95 %.
+struct Certificate {
+  enum class Verdict {
+    Met,         ///< the whole interval of the RMS is below the target
+    NotMet,      ///< ... above the target
+    NotResolved  ///< more probes are needed to say
+  };
+  int probes = 0;           ///< that were measured; 0: everything below means nothing
+  double target = 0.0;      ///< SolveOptions::error; without one what the solution claims of itself
+  double bias = 0.0;        ///< mean signed error
+  double bias_error = 0.0;  ///< half the width of its interval
+  double rms = 0.0, rms_low = 0.0, rms_high = 0.0;  ///< the probes' own noise taken off
+  double largest = 0.0;      ///< of the absolute errors, with the probe's noise
+  double probe_noise = 0.0;  ///< RMS of the probes' own standard errors
+  Verdict verdict = Verdict::NotResolved;
+  std::vector<std::string> not_sampled;  ///< light that the probes took from the solution
+  std::uint64_t rays = 0;                ///< traced for it
+};
+/// "met", "not met", "not resolved".
+[[nodiscard]] std::string_view verdict_name(Certificate::Verdict verdict);
 
 struct SolveResult {
   Elements elements;  ///< geometry of the elements (layout without values)
@@ -73,8 +98,11 @@ struct SolveResult {
   int iterations = 0;
   double error_estimate = 0.0;  ///< RMS of the relative standard error of irradiance over the area
   double mesh_error = 0.0;      ///< RMS of what interpolation of direct light misses, estimated
+  Certificate certificate;      ///< if SolveOptions::probes asked for one
   bool complete = true;    ///< false: stopped by time or request; the field is usable all the same
-  std::string stopped_by;  ///< "tolerance", "iterations", "time limit", "interrupt"
+  /// "tolerance", or if an error was asked for "error" (reached) or "rounds" (not); "iterations",
+  /// "time limit", "memory limit", "interrupt"
+  std::string stopped_by;
 };
 
 /// Where another solve left off.
@@ -105,5 +133,12 @@ struct Previous {
 [[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
                                 const SolveOptions& options, const scene::Control& control,
                                 const Previous& previous);
+
+/// Measures a field that solve() returned, or what was made of it since.
+/// \param solved  elements and field. Its errors are the target if the options ask for none.
+/// \throws std::invalid_argument  if the field's lanes are not the basis'.
+[[nodiscard]] Certificate certify(const scene::RayQuery& query,
+                                  const material::SpectralBasis& basis, const SolveResult& solved,
+                                  const SolveOptions& options, const scene::Control& control = {});
 
 }  // namespace atrium::radiosity

@@ -6,7 +6,7 @@
 
 #include "directions.h"
 #include "scene/light_groups.h"
-#include "spherical_triangle.h"
+#include "scene/spherical_triangle.h"
 
 namespace atrium::scene {
 namespace {
@@ -224,24 +224,33 @@ auto FiniteLights<N>::place_on(const EmissiveTriangle& t, const Vec3f& p, const 
 }
 
 template <int N>
+std::optional<LightSample<N>> FiniteLights<N>::positional(std::size_t i, const Vec3f& p) const {
+  const Positional& light = positional_[i];
+  const Vec3f d = light.position - p;
+  const float distance2 = d.squaredNorm();
+  if (!(distance2 > 0.0f)) return std::nullopt;
+  LightSample<N> s;
+  s.distance = std::sqrt(distance2);
+  s.wi = d / s.distance;
+  s.radiance = intensity_towards(light, -s.wi) / distance2;
+  s.pdf = 1.0f;
+  s.dirac = true;
+  s.light = s.source = light.index;
+  return s;
+}
+
+template <int N>
 std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3f& normal,
                                                       float u_choice, const Vec2f& u) const {
   const auto choice = tree_.choose(p, normal, u_choice);
   if (!choice) return std::nullopt;
-  LightSample<N> s;
-  s.pdf = choice->probability;
   if (choice->light < positional_.size()) {
-    const Positional& light = positional_[choice->light];
-    const Vec3f d = light.position - p;
-    const float distance2 = d.squaredNorm();
-    if (!(distance2 > 0.0f)) return std::nullopt;
-    s.distance = std::sqrt(distance2);
-    s.wi = d / s.distance;
-    s.radiance = intensity_towards(light, -s.wi) / distance2;
-    s.dirac = true;
-    s.source = light.index;
+    auto s = positional(choice->light, p);
+    if (s) s->pdf = choice->probability;
     return s;
   }
+  LightSample<N> s;
+  s.pdf = choice->probability;
   const std::uint32_t index = choice->light - static_cast<std::uint32_t>(positional_.size());
   const auto place = place_on(triangles_[index], p, u);
   if (!place) return std::nullopt;
@@ -249,6 +258,7 @@ std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3
   s.distance = place->distance;
   s.radiance = radiance_at(place->point);
   s.pdf *= place->pdf;
+  s.light = static_cast<std::uint32_t>(scene_->lights.size()) + index;
   s.source = light_source(*scene_, triangles_[index].object);
   return s;
 }

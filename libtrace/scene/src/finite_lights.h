@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "light_tree.h"
@@ -22,6 +23,11 @@ class FiniteLights {
   /// Density [1/sr] of that for the emissive point that a ray from p hits.
   [[nodiscard]] float pdf(const Vec3f& p, const Vec3f& normal, const SurfacePoint& hit,
                           float distance) const;
+  /// All triangles that emit; triangle i is LightSample::light - (number of the scene's lights).
+  [[nodiscard]] std::span<const EmissiveTriangle> surfaces() const { return triangles_; }
+  [[nodiscard]] std::size_t positional_count() const { return positional_.size(); }
+  /// One of the lights without extent; pdf is 1. nullopt: p is its place.
+  [[nodiscard]] std::optional<LightSample<N>> positional(std::size_t i, const Vec3f& p) const;
   [[nodiscard]] Spectrum<N> emitted(const SurfacePoint& point, const Vec3f& wo) const;
 
   /// Flux of each light, and a ray of one of them that carries it.
@@ -35,11 +41,6 @@ class FiniteLights {
     Vec3f position;
     Eigen::Matrix3f to_local;  // rotation
     Spectrum<N> intensity;
-  };
-  struct EmissiveTriangle {
-    ObjectId object;
-    std::uint32_t triangle;
-    float area;
   };
   struct Place {
     SurfacePoint point;

@@ -62,6 +62,33 @@ struct LightSampler<N>::Impl {
     return g;
   }
 
+  /// A sun without a size; pdf is 1.
+  LightSample<N> sun(const typename Sky::Sun& sun) const {
+    LightSample<N> s;
+    s.distance = std::numeric_limits<float>::infinity();
+    s.wi = sun.direction;
+    s.radiance = sun.irradiance;
+    s.pdf = 1.0f;
+    s.dirac = true;
+    s.source = sun.light;
+    return s;
+  }
+  /// Environment and discs, without other lights.
+  std::optional<LightSample<N>> sample_sky(const typename Sky::Shares& shares, const Vec3f& p,
+                                           const Vec3f& normal, const Vec2f& u) const {
+    if (!(shares.sky() > 0.0f)) return std::nullopt;
+    const auto wi = sky.sample(shares, p, normal, u);
+    if (!wi) return std::nullopt;
+    LightSample<N> s;
+    s.distance = std::numeric_limits<float>::infinity();
+    s.wi = *wi;
+    s.pdf = sky.pdf(shares, p, normal, s.wi);
+    s.radiance = sky.radiance(s.wi);
+    s.source = environment_number;
+    if (!(s.pdf > 0.0f)) return std::nullopt;
+    return s;
+  }
+
   /// Flux that arrives from far away through a disc that faces it and covers the scene.
   EmissionSample<N> arriving(const Vec3f& towards, const Spectrum<N>& irradiance,
                              std::uint32_t source, const Vec2f& u) const {
@@ -115,28 +142,18 @@ std::optional<LightSample<N>> LightSampler<N>::sample(const Vec3f& p, const Vec3
   const float sum = groups.sum();
   if (!(sum > 0.0f)) return std::nullopt;
   float x = u_choice * sum;
-  LightSample<N> s;
-  s.distance = std::numeric_limits<float>::infinity();
   for (const auto& sun : m.sky.points()) {
     const float weight = m.sky.share(sun, p, normal);
     if (x < weight) {
-      s.wi = sun.direction;
-      s.radiance = sun.irradiance;
+      LightSample<N> s = m.sun(sun);
       s.pdf = weight / sum;
-      s.dirac = true;
-      s.source = sun.light;
       return s;
     }
     x -= weight;
   }
   if (x < groups.sky.sky()) {
-    const auto wi = m.sky.sample(groups.sky, p, normal, u);
-    if (!wi) return std::nullopt;
-    s.wi = *wi;
-    s.pdf = m.sky.pdf(groups.sky, p, normal, s.wi) * (groups.sky.sky() / sum);
-    s.radiance = m.sky.radiance(s.wi);
-    s.source = m.environment_number;
-    if (!(s.pdf > 0.0f)) return std::nullopt;
+    auto s = m.sample_sky(groups.sky, p, normal, u);
+    if (s) s->pdf *= groups.sky.sky() / sum;
     return s;
   }
   x -= groups.sky.sky();
@@ -144,6 +161,30 @@ std::optional<LightSample<N>> LightSampler<N>::sample(const Vec3f& p, const Vec3
   auto finite = m.finite.sample(p, normal, std::min(x, 0x1.fffffep-1f), u);
   if (finite) finite->pdf *= groups.finite / sum;
   return finite;
+}
+
+template <int N>
+std::span<const EmissiveTriangle> LightSampler<N>::surfaces() const {
+  return impl_->finite.surfaces();
+}
+
+template <int N>
+std::size_t LightSampler<N>::dirac_count() const {
+  return impl_->finite.positional_count() + impl_->sky.points().size();
+}
+
+template <int N>
+std::optional<LightSample<N>> LightSampler<N>::dirac(std::size_t i, const Vec3f& p) const {
+  const std::size_t finite = impl_->finite.positional_count();
+  if (i < finite) return impl_->finite.positional(i, p);
+  return impl_->sun(impl_->sky.points()[i - finite]);
+}
+
+template <int N>
+std::optional<LightSample<N>> LightSampler<N>::sample_sky(const Vec3f& p, const Vec3f& normal,
+                                                          const Vec2f& u) const {
+  if (impl_->sky.empty()) return std::nullopt;
+  return impl_->sample_sky(impl_->sky.shares(p, normal), p, normal, u);
 }
 
 template <int N>

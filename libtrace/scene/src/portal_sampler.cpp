@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "directions.h"
-#include "spherical_triangle.h"
+#include "scene/spherical_triangle.h"
 
 namespace atrium::scene {
 namespace {

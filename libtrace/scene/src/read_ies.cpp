@@ -5,17 +5,14 @@
 #include <numbers>
 #include <sstream>
 
+#include "luminaire_text.h"
 #include "material/error.h"
-#include "scene/scene_io.h"
+#include "scene/luminaire.h"
 
 namespace atrium::scene {
-namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr std::uintmax_t kMaxFileBytes = 64u << 20;
-constexpr int kMaxAngles = 10000;
-
-std::string read_text(const std::filesystem::path& file) {
+std::string read_luminaire_text(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kMaxFileBytes = 64u << 20;
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) throw Error(file.string() + ": cannot be read");
@@ -26,6 +23,11 @@ std::string read_text(const std::filesystem::path& file) {
   if (!in) throw Error(file.string() + ": cannot be read");
   return text.str();
 }
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr int kMaxAngles = 10000;
 
 // The numbers of a file, separated by white space or commas, with the line for messages.
 class NumberStream {
@@ -109,10 +111,25 @@ double read_tilt_factor(NumberStream& in) {
 }
 
 struct Header {
+  std::string format = "LM-63-1986";  // which has no line of its own
+  std::string name;
   std::string tilt;
   std::size_t data = 0;  // offset of what follows the TILT line
   int line = 1;          // of that offset
 };
+
+// "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019", or "[LUMINAIRE] text".
+void read_label(const std::string& line, Header& header) {
+  constexpr std::string_view kName = "[LUMINAIRE]";
+  if (header.line == 1 && line.starts_with("IES")) {
+    const std::size_t standard = line.find("LM-63");
+    header.format = standard != std::string::npos ? line.substr(standard) : line;
+    if (line == "IESNA91") header.format = "LM-63-1991";
+  }
+  if (!line.starts_with(kName)) return;
+  const std::size_t text = line.find_first_not_of(" \t", kName.size());
+  if (text != std::string::npos) header.name = line.substr(text);
+}
 
 Header read_header(const std::string& name, const std::string& text) {
   Header header;
@@ -123,6 +140,7 @@ Header read_header(const std::string& name, const std::string& text) {
     begin = std::min(end + 1, text.size());
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
     line.erase(0, std::min(line.find_first_not_of(" \t\xef\xbb\xbf"), line.size()));
+    read_label(line, header);
     if (line.size() < 5) continue;
     std::string start = line.substr(0, 5);
     for (char& c : start) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -147,14 +165,16 @@ double tilt_factor(const Header& header, NumberStream& in, const std::filesystem
                 ": TILT must be NONE, INCLUDE or the name of a file beside this one");
   }
   const std::filesystem::path tilt_file = file.parent_path() / name;
-  const std::string text = read_text(tilt_file);
+  const std::string text = read_luminaire_text(tilt_file);
   NumberStream tilt(tilt_file.string(), text, 1);
   return read_tilt_factor(tilt);
 }
 
 // The table as measured: candela[h * vertical.size() + v].
 struct Table {
-  int type = 1;  // 1: C, 2: B, 3: A
+  int type = 1;                // 1: C, 2: B, 3: A
+  double lamp_flux = -1.0;     // of all lamps; below 0: absolute photometry
+  Vec3d size = Vec3d::Zero();  // width, length, height [m]; negative: round
   std::vector<double> vertical;
   std::vector<double> horizontal;
   std::vector<double> candela;
@@ -162,14 +182,17 @@ struct Table {
 
 Table read_table(NumberStream& in, double tilt) {
   Table table;
-  in.integer("number of lamps", 0, 1000000);
-  in.number("lumens per lamp");
+  const int lamps = in.integer("number of lamps", 0, 1000000);
+  const double lumens = in.number("lumens per lamp");
+  table.lamp_flux = lumens < 0.0 ? -1.0 : lamps * lumens;
   const double multiplier = in.factor("candela multiplier");
   const int vertical = in.integer("number of vertical angles", 2, kMaxAngles);
   const int horizontal = in.integer("number of horizontal angles", 1, kMaxAngles);
   table.type = in.integer("photometric type", 1, 3);
-  in.integer("units type", 1, 2);
-  for (const char* size : {"width", "length", "height"}) in.number(size);
+  constexpr double kFoot = 0.3048;
+  const double metres = in.integer("units type", 1, 2) == 1 ? kFoot : 1.0;
+  const std::pair<const char*, int> sizes[] = {{"width", 0}, {"length", 1}, {"height", 2}};
+  for (const auto& [name, axis] : sizes) table.size[axis] = in.number(name) * metres;
   const double ballast = in.factor("ballast factor");
   const double photometric = in.factor("ballast-lamp photometric factor");
   in.number("input watts");
@@ -232,6 +255,18 @@ IntensityProfile unfold_type_c(const Table& table, const NumberStream& in) {
   return profile;
 }
 
+// As the file leaves it out.
+std::string symmetry_of(const Table& table) {
+  const double first = table.horizontal.front();
+  const double last = table.horizontal.back();
+  if (table.type != 1) return first >= 0.0 ? "left-right" : "none";
+  if (table.horizontal.size() == 1) return "round";
+  if (near(first, 0.0) && near(last, 90.0)) return "planes 0-180 and 90-270";
+  if (near(first, 0.0) && near(last, 180.0)) return "plane 0-180";
+  if (near(first, 90.0) && near(last, 270.0)) return "plane 90-270";
+  return "none";
+}
+
 double table_at(const Table& table, double v, double h) {
   if (table.horizontal.front() >= 0.0) h = std::abs(h);  // mirror symmetry
   if (table.vertical.front() >= 0.0) v = std::abs(v);
@@ -282,13 +317,23 @@ IntensityProfile convert_to_type_c(const Table& table) {
 
 }  // namespace
 
-IntensityProfile read_ies(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
+Luminaire read_ies(const std::filesystem::path& file) {
+  const std::string text = read_luminaire_text(file);
   const Header header = read_header(file.string(), text);
   NumberStream in(file.string(), std::string_view(text).substr(header.data), header.line);
   const double tilt = tilt_factor(header, in, file);
   const Table table = read_table(in, tilt);
-  return table.type == 1 ? unfold_type_c(table, in) : convert_to_type_c(table);
+  Luminaire l;
+  l.format = header.format;
+  l.name = header.name;
+  l.type = table.type == 1 ? 'C' : table.type == 2 ? 'B' : 'A';
+  l.symmetry = symmetry_of(table);
+  if (table.lamp_flux >= 0.0) l.lamp_flux = table.lamp_flux;
+  const bool round = table.size.x() < 0.0 || table.size.y() < 0.0;
+  l.opening = table.size.cwiseAbs();
+  if (round) l.opening.y() = 0.0;
+  l.profile = table.type == 1 ? unfold_type_c(table, in) : convert_to_type_c(table);
+  return l;
 }
 
 }  // namespace atrium::scene

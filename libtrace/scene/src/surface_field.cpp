@@ -26,7 +26,7 @@ GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
 }
 
 std::uint32_t cell_coordinate(float x, std::uint32_t n) {
-  return static_cast<std::uint32_t>(static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(n) - 1.0f)));
+  return static_cast<std::uint32_t>(std::clamp(x, 0.0f, static_cast<float>(n - 1)));
 }
 
 /// The leaf that a place lies in: an element or kNone.
@@ -105,38 +105,44 @@ class StencilMaker {
   /// Bilinear between the cells of a level whose centres surround (x, y), in cells of that level.
   /// \returns false if none of them has a valid element.
   bool add_block(int level, float x, float y, float weight) {
-    const float fx = std::floor(x - 0.5f);
-    const float fy = std::floor(y - 0.5f);
-    const float wx = x - 0.5f - fx;
-    const float wy = y - 0.5f - fy;
-    const auto ix = static_cast<std::int64_t>(fx);
-    const auto iy = static_cast<std::int64_t>(fy);
+    // Truncation of what is not negative: std::floor() is a call on the oldest processors.
+    const auto ix = static_cast<std::int64_t>(std::max(x + 0.5f, 0.0f)) - 1;
+    const auto iy = static_cast<std::int64_t>(std::max(y + 0.5f, 0.0f)) - 1;
+    const float wx = x - 0.5f - static_cast<float>(ix);
+    const float wy = y - 0.5f - static_cast<float>(iy);
     std::array<SurfaceField::Cell, 4> cells;
     std::array<float, 4> w{};
     float sum = 0.0f;
+    bool plain = result_.count == 0;  // four elements of this level, none there yet
     for (unsigned k = 0; k < 4; ++k) {
       w[k] = ((k & 1U) != 0 ? wx : 1.0f - wx) * ((k & 2U) != 0 ? wy : 1.0f - wy);
       if (!(w[k] > 0.0f)) continue;
       cells[k] = field_.cell(facet_, level, ix + (k & 1U), iy + (k >> 1U));
-      if (!(valid_area(cells[k].node) > 0.0f)) w[k] = 0.0f;
+      if (!any_valid(cells[k].node)) {
+        w[k] = 0.0f;
+        continue;
+      }
+      plain = plain && cells[k].level == level && !SurfaceField::is_inner(cells[k].node);
       sum += w[k];
     }
     if (!(sum > 0.0f)) return false;
-    for (unsigned k = 0; k < 4; ++k)
-      if (w[k] > 0.0f)
-        add_cell(cells[k], level, ix + (k & 1U), iy + (k >> 1U), weight * w[k] / sum);
+    for (unsigned k = 0; k < 4; ++k) {
+      if (!(w[k] > 0.0f)) continue;
+      if (plain)
+        push(cells[k].node, w[k] / sum * weight);
+      else
+        add_cell(cells[k], level, ix + (k & 1U), iy + (k >> 1U), w[k] / sum * weight);
+    }
     return true;
   }
 
   void add(std::uint32_t element, float weight) {
     int i = 0;
     while (i < result_.count && result_.element[i] != element) ++i;
-    if (i == SurfaceField::Stencil::kCapacity) return;
-    if (i == result_.count) {
-      result_.element[result_.count++] = element;
-      result_.weight[i] = 0.0f;
-    }
-    result_.weight[i] += weight;
+    if (i < result_.count)
+      result_.weight[i] += weight;
+    else if (i < SurfaceField::Stencil::kCapacity)
+      push(element, weight);
   }
 
   [[nodiscard]] bool usable(std::uint32_t element) const {
@@ -144,7 +150,18 @@ class StencilMaker {
   }
 
  private:
-  /// Area of the valid elements below a node, 0 if there are none.
+  void push(std::uint32_t element, float weight) {
+    result_.element[result_.count] = element;
+    result_.weight[result_.count++] = weight;
+  }
+
+  [[nodiscard]] bool any_valid(std::uint32_t node) const {
+    if (!SurfaceField::is_inner(node)) return usable(node);
+    return any_valid(field_.child(node, 0, 0)) || any_valid(field_.child(node, 1, 0)) ||
+           any_valid(field_.child(node, 0, 1)) || any_valid(field_.child(node, 1, 1));
+  }
+
+  /// Of the valid elements below a node.
   [[nodiscard]] float valid_area(std::uint32_t node) const {
     if (!SurfaceField::is_inner(node)) return usable(node) ? field_.element_area[node] : 0.0f;
     float area = 0.0f;
@@ -184,21 +201,6 @@ class StencilMaker {
 
 }  // namespace
 
-SurfaceField::Cell SurfaceField::cell(const Facet& facet, int level, std::int64_t x,
-                                      std::int64_t y) const {
-  const std::int64_t cx = x >> level;
-  const std::int64_t cy = y >> level;
-  if (cx < 0 || cy < 0 || cx >= facet.nx || cy >= facet.ny) return {};
-  Cell c{nodes[facet.first_cell + static_cast<std::size_t>(cy * facet.nx + cx)], 0};
-  while (is_inner(c.node) && c.level < level) {
-    ++c.level;
-    const int shift = level - c.level;
-    c.node = child(c.node, static_cast<std::uint32_t>(x >> shift),
-                   static_cast<std::uint32_t>(y >> shift));
-  }
-  return c;
-}
-
 std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                        const Vec3f& position) const {
   const GridPlace p = place(*this, scene, object, triangle, position);
@@ -222,14 +224,16 @@ SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
   if (here == kNone) return s;
   StencilMaker maker(*this, *p.facet, side, s);
   const int level = element_level[here];
-  const float scale = std::ldexp(1.0f, level);
+  const auto scale = static_cast<float>(1U << static_cast<unsigned>(level));
   if (!maker.add_block(level, p.x * scale, p.y * scale, 1.0f)) {
     if (maker.usable(here)) maker.add(here, 1.0f);
     return s;
   }
-  float sum = 0.0f;
-  for (int i = 0; i < s.count; ++i) sum += s.weight[i];
-  for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
+  if (s.count == Stencil::kCapacity) {
+    float sum = 0.0f;
+    for (int i = 0; i < s.count; ++i) sum += s.weight[i];
+    for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
+  }
   return s;
 }
 

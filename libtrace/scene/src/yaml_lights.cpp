@@ -4,6 +4,7 @@
 #include "material/cie.h"
 #include "material/error.h"
 #include "scene/image_io.h"
+#include "scene/luminaire.h"
 #include "yaml_scene.h"
 
 namespace atrium::scene {
@@ -100,7 +101,7 @@ Light read_luminaire(const YamlScene& scene, const YamlView& view) {
                                        "flux", "color", "falloff"});
   ProfileLight luminaire;
   const YamlView file = map.get("file");
-  luminaire.profile = read_ies(file.file());
+  luminaire.profile = atrium::scene::read_luminaire(file.file()).profile;
   luminaire.falloff = read_falloff(map);
   double scale = scene.unit == RadianceUnit::Watt ? 1.0 / material::kWhiteLumensPerWatt : 1.0;
   if (const auto flux = map.find("flux")) {

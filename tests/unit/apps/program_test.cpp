@@ -29,7 +29,7 @@ TEST(AtriumProgram, HelpAndVersion) {
   const TempFolder folder;
   const Result help = run(folder, "--help");
   EXPECT_EQ(help.code, 0);
-  for (const char* word : {"render", "solve", "info", "compare"}) {
+  for (const char* word : {"render", "solve", "measure", "info", "compare"}) {
     EXPECT_NE(help.out.find(word), std::string::npos);
   }
   EXPECT_EQ(run(folder, "render --help").code, 0);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "material/error.h"
-#include "scene/scene_io.h"
+#include "scene/luminaire.h"
 
 namespace atrium::scene {
 namespace {
@@ -83,7 +83,7 @@ class IesFiles : public testing::TestWithParam<Expected> {};
 TEST_P(IesFiles, FluxWithinOnePercent) {
   const std::filesystem::path file = kFolder / GetParam().file;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no file " << GetParam().file;
-  const IntensityProfile profile = read_ies(file);
+  const IntensityProfile profile = read_ies(file).profile;
   EXPECT_NEAR(profile.flux() / GetParam().flux, 1.0, 0.01);
   EXPECT_NEAR(flux_by_sampling(profile, 720) / profile.flux(), 1.0, 0.003);
 }
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, IesFiles,
 TEST(Ies, TypeBKeepsFluxAndAxis) {
   const std::filesystem::path file = kFolder / "own_type_b_flood.ies";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no file own_type_b_flood.ies";
-  const IntensityProfile profile = read_ies(file);
+  const IntensityProfile profile = read_ies(file).profile;
   double flux = 0.0;  // d omega = cos(H) dH dV on the grid's own bilinear table
   const auto table = [](double x, double width) {
     const double low = std::floor(x / 10.0) * 10.0;
@@ -127,32 +127,32 @@ std::string type_c(const std::string& horizontal, int count, const std::string& 
 
 TEST(Ies, SymmetriesUnfold) {
   const TemporaryFile quadrant("quadrant.ies", type_c("0 90", 2, "1 1 5 5"));
-  const IntensityProfile q = read_ies(quadrant.path());
+  const IntensityProfile q = read_ies(quadrant.path()).profile;
   for (const double phi : {45.0, 135.0, 225.0, 315.0}) EXPECT_NEAR(q.at(30.0, phi), 3.0, 1e-12);
   EXPECT_NEAR(q.at(30.0, 270.0), 5.0, 1e-12);
 
   const TemporaryFile half("half.ies", type_c("0 90 180", 3, "1 1 5 5 9 9"));
-  const IntensityProfile h = read_ies(half.path());
+  const IntensityProfile h = read_ies(half.path()).profile;
   EXPECT_NEAR(h.at(30.0, 135.0), 7.0, 1e-12);
   EXPECT_NEAR(h.at(30.0, 225.0), 7.0, 1e-12);
   EXPECT_NEAR(h.at(30.0, 300.0), h.at(30.0, 60.0), 1e-12);
 
   const TemporaryFile other("other.ies", type_c("90 180 270", 3, "1 1 5 5 9 9"));
-  const IntensityProfile o = read_ies(other.path());
+  const IntensityProfile o = read_ies(other.path()).profile;
   EXPECT_NEAR(o.at(30.0, 135.0), 3.0, 1e-12);
   EXPECT_NEAR(o.at(30.0, 45.0), 3.0, 1e-12);  // mirrored at the plane 90-270
   EXPECT_NEAR(o.at(30.0, 315.0), 7.0, 1e-12);
   EXPECT_NEAR(o.at(30.0, 0.0), 5.0, 1e-12);
 
   const TemporaryFile full("full.ies", type_c("0 120 240", 3, "1 1 5 5 9 9"));
-  EXPECT_NEAR(read_ies(full.path()).at(30.0, 300.0), 5.0, 1e-12);  // 240 and 360 = 0
+  EXPECT_NEAR(read_ies(full.path()).profile.at(30.0, 300.0), 5.0, 1e-12);  // 240 and 360 = 0
 }
 
 TEST(Ies, FactorsMultiply) {
   const TemporaryFile file("factors.ies",
                            "IESNA:LM-63-1995\r\nTILT=NONE\r\n1 1000 2 2 1 1 2 0 0 0\r\n"
                            "0.5, 3, 10\r\n0 180\r\n0\r\n10 10\r\n");
-  EXPECT_NEAR(read_ies(file.path()).flux(), 4.0 * kPi * 10.0 * 2.0 * 0.5 * 3.0, 1e-9);
+  EXPECT_NEAR(read_ies(file.path()).profile.flux(), 4.0 * kPi * 10.0 * 2.0 * 0.5 * 3.0, 1e-9);
 }
 
 TEST(Ies, TiltTableInAFileOfItsOwn) {
@@ -160,7 +160,7 @@ TEST(Ies, TiltTableInAFileOfItsOwn) {
   const std::string text =
       "TILT=atrium_ies_lamp.tlt\n1 1 1 2 1 1 2 0 0 0\n1 1 1\n0 180\n0\n10 10\n";
   const TemporaryFile file("tilted.ies", text);
-  EXPECT_NEAR(read_ies(file.path()).flux(), 4.0 * kPi * 5.0, 1e-9);
+  EXPECT_NEAR(read_ies(file.path()).profile.flux(), 4.0 * kPi * 5.0, 1e-9);
   EXPECT_NE(message_of("outside.ies", "TILT=../x.tlt\n1").find(":1: TILT must be"),
             std::string::npos);
 }

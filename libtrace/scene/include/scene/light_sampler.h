@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "material/spectral_basis.h"
@@ -22,7 +23,15 @@ struct LightSample {
                           ///< irradiance on a plane facing them
   float pdf = 0.0f;  ///< [1/sr] including the choice of the light; Dirac: probability of the choice
   bool dirac = false;        ///< point, spot, directional: cannot be hit by chance
+  std::uint32_t light = 0;  ///< of lights at a place: Scene::lights, then emissive triangles
   std::uint32_t source = 0;  ///< number of light_groups.h; of the sky: see LightSampler::sky_parts
+};
+
+/// A triangle of a surface that emits.
+struct EmissiveTriangle {
+  ObjectId object;
+  std::uint32_t triangle = 0;  ///< within the object's mesh
+  float area = 0.0f;           ///< [m^2]
 };
 
 /// Where a photon starts.
@@ -56,6 +65,16 @@ class LightSampler {
                           float distance) const;
   /// Same for the environment in a direction.
   [[nodiscard]] float pdf_environment(const Vec3f& p, const Vec3f& normal, const Vec3f& wi) const;
+
+  /// Triangle i is LightSample::light - (number of the scene's lights).
+  [[nodiscard]] std::span<const EmissiveTriangle> surfaces() const;
+  /// Lights without extent, one at a time: 0 to dirac_count() - 1; pdf is 1. nullopt: p is its
+  /// place.
+  [[nodiscard]] std::size_t dirac_count() const;
+  [[nodiscard]] std::optional<LightSample<N>> dirac(std::size_t i, const Vec3f& p) const;
+  /// Environment and discs together without other lights. nullopt where there is none.
+  [[nodiscard]] std::optional<LightSample<N>> sample_sky(const Vec3f& p, const Vec3f& normal,
+                                                         const Vec2f& u) const;
 
   /// Radiance that a surface emits towards wo (unit, away from the surface).
   [[nodiscard]] Spectrum<N> emitted(const SurfacePoint& point, const Vec3f& wo) const;

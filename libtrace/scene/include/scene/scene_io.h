@@ -26,7 +26,4 @@ void read_obj(Model& model, const std::filesystem::path& file, const ReadOptions
 void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadOptions& options);  // PLY, STL
 void read_yaml(Model& model, const std::filesystem::path& file, const ReadOptions& options);
 
-/// IES LM-63 (1986 to 2019) luminaire.
-[[nodiscard]] IntensityProfile read_ies(const std::filesystem::path& file);
-
 }  // namespace atrium::scene

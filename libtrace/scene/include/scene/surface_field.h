@@ -77,7 +77,18 @@ struct SurfaceField {
     std::uint32_t node = kNone;
     int level = 0;
   };
-  [[nodiscard]] Cell cell(const Facet& facet, int level, std::int64_t x, std::int64_t y) const;
+  [[nodiscard]] Cell cell(const Facet& facet, int level, std::int64_t x, std::int64_t y) const {
+    const std::int64_t cx = x >> level;
+    const std::int64_t cy = y >> level;
+    if (cx < 0 || cy < 0 || cx >= facet.nx || cy >= facet.ny) return {};
+    Cell c{nodes[facet.first_cell + static_cast<std::size_t>(cy * facet.nx + cx)], 0};
+    while (is_inner(c.node) && c.level < level) {
+      const int shift = level - ++c.level;
+      c.node = child(c.node, static_cast<std::uint32_t>(x >> shift),
+                     static_cast<std::uint32_t>(y >> shift));
+    }
+    return c;
+  }
 
   /// Element under a point, or kNone (no facet, or a cell that nothing was found in).
   [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,

@@ -14,8 +14,11 @@ namespace atrium::scene {
 /// Source: Arvo 1995, Stratified Sampling of Spherical Triangles.
 class SphericalTriangle {
  public:
-  SphericalTriangle(const std::array<Vec3f, 3>& corners, const Vec3f& p) {
-    for (std::size_t i = 0; i < 3; ++i) v_[i] = (corners[i] - p).cast<double>().normalized();
+  template <class Scalar>
+  SphericalTriangle(const std::array<Eigen::Matrix<Scalar, 3, 1>, 3>& corners,
+                    const Eigen::Matrix<Scalar, 3, 1>& p) {
+    for (std::size_t i = 0; i < 3; ++i)
+      v_[i] = (corners[i] - p).template cast<double>().normalized();
     const double triple = std::abs(v_[0].dot(v_[1].cross(v_[2])));
     const double denominator = 1.0 + v_[0].dot(v_[1]) + v_[1].dot(v_[2]) + v_[2].dot(v_[0]);
     solid_angle_ = 2.0 * std::atan2(triple, denominator);  // Van Oosterom & Strackee 1983

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "options.h"
+#include "radiosity/measure.h"
+#include "session.h"
+
+namespace atrium::app {
+
+/// One sensor per line, "x y z nx ny nz" in metres, separated by blanks, commas or semicolons;
+/// normals of any length; # starts a comment. \throws Error "FILE:line: ..." for anything else.
+[[nodiscard]] std::vector<radiosity::Sensor> read_sensors(const std::string& file);
+
+/// At the centres of the cells of a grid, looking along u x v.
+[[nodiscard]] std::vector<radiosity::Sensor> grid_sensors(const SensorGrid& grid);
+
+/// Over the bounds of the scene at a height, looking up; places without a floor below and a
+/// ceiling above (outdoors) are left out. \throws Error  if there is no such place or there are too
+/// many.
+[[nodiscard]] std::vector<radiosity::Sensor> work_plane_sensors(const LoadedScene& loaded,
+                                                                double height, double spacing);
+
+}  // namespace atrium::app
