@@ -70,12 +70,15 @@ class RowSolver {
   void restore(scene::ArchiveReader& reader, bool same_light) {
     archive(reader);
     if (!consistent()) reader.damaged();
+    result_.iteration = restored_iteration_;
+    iterations_before_assembly_ = result_.iteration.iterations;
     if (stage_ <= Stage::Rows) {
       // These follow from rows that are traced again.
       exposed_.assign(problem_.side_count(), 1.0f);
       mixed_.assign(problem_.side_count(), 0);
       result_.valid = problem_.sides.is_active;
       groups_.assign(groups_.size(), GroupLight<N>());
+      result_.iteration = {};
       if (!same_light) forget_reflected();
       return;
     }
@@ -189,7 +192,16 @@ class RowSolver {
   void archive(Archive& a) {
     a(stage_);
     a(round_);
-    a(result_.iteration.iterations);
+    // Whoever goes on assembles again.
+    Iteration iteration = result_.iteration;
+    iteration.iterations = iterations_before_assembly_;
+    a(iteration.iterations);
+    a(iteration.residual);
+    a(iteration.converged);
+    auto trapped = static_cast<std::uint64_t>(iteration.trapped);
+    a(trapped);
+    iteration.trapped = trapped;
+    restored_iteration_ = iteration;
     direct_.archive(a);
     shot_.archive(a);
     gathered_.archive(a);
@@ -473,6 +485,7 @@ class RowSolver {
     }
     slowest.iterations += result_.iteration.iterations;
     result_.iteration = slowest;
+    iterations_before_assembly_ = slowest.iterations;
   }
 
   void smooth(GroupLight<N>& g, const std::vector<double>& variance) const {
@@ -483,6 +496,7 @@ class RowSolver {
   /// What samples found is a better field than the rows' for the next samples to read. Those that
   /// go on are drawn anew against it.
   void refine_field(const std::vector<Draw>& plan) {
+    iterations_before_assembly_ = result_.iteration.iterations;
     for (std::size_t n = 0; n < groups_.size(); ++n) {
       GroupLight<N>& g = groups_[n];
       for (const SideIndex i : problem_.sides.active)
@@ -516,6 +530,7 @@ class RowSolver {
   /// Fresh rays against the smoothed solution, pooled with the rows' own estimate against it; what
   /// that changes is propagated through the rows once more, as a smooth field again.
   void assemble() {
+    iterations_before_assembly_ = result_.iteration.iterations;
     for (std::size_t g = 0; g < groups_.size(); ++g) pool(g);
     sum_groups();
     estimate_variance();
@@ -829,6 +844,8 @@ class RowSolver {
   std::vector<std::uint32_t> traced_;  ///< rays of each row of the solver before this one
   bool caught_up_ = true;              ///< false: stopped before those were traced again
   std::vector<char> state_;
+  int iterations_before_assembly_ = 0;
+  Iteration restored_iteration_;
 };
 
 }  // namespace

@@ -85,6 +85,9 @@ void expect_same(const SolveResult& a, const SolveResult& b) {
   EXPECT_EQ(a.field.valid, b.field.valid);
   EXPECT_EQ(a.error_estimate, b.error_estimate);
   EXPECT_EQ(a.mesh_error, b.mesh_error);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.residual, b.residual);
+  EXPECT_EQ(a.stopped_by, b.stopped_by);
   EXPECT_EQ(a.flux.escaped, b.flux.escaped);
 }
 

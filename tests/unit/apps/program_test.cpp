@@ -194,6 +194,7 @@ objects: [{name: room, box: {size: [4, 3, 4], inside: true}, material: white}]
 lights:
   - {name: left, point: {position: [-1, 0.5, 0], intensity: 100}}
   - {name: right, point: {position: [1, 0.5, 0], intensity: 50}}
+cameras: [{name: eye, perspective: {eye: [0, 0, 1.5], target: [0, 0, 0]}}]
 )");
   const std::string rest = " --quality draft --quiet ";
   const Result solve = run(folder, "solve s.yaml --light-groups --keep-rows -o s.atrium" + rest);
@@ -205,7 +206,7 @@ lights:
   expect_error(run(folder, "reweight s.atrium --set middle=1 -o x.atrium"), 2, "'left', 'right'");
   expect_error(run(folder, "reweight s.atrium --set left=-1 -o x.atrium"), 2, "left=-1");
   expect_error(run(folder, "reweight s.atrium --set left -o x.atrium"), 2, "NAME=FACTOR");
-  expect_error(run(folder, "render s.yaml -o x.pfm --size 24x18 --solution dim.atrium"), 2, "dimmed");
+  expect_error(run(folder, "render s.yaml -o x.pfm --quiet --size 24x18 --solution dim.atrium"), 2, "dimmed");
   // Nothing is left to do, so nothing changes.
   const Result again =
       run(folder, "solve s.yaml --light-groups --keep-rows --solution s.atrium -o t.atrium" + rest);
