@@ -88,9 +88,12 @@ class RowSolver {
     if (rays >= kWorthwhile) {
       draw_gather(top_up(problem_, gathered_, lit, rays / 4));
       assemble();
-      refine_field(top_up(problem_, gathered_, lit, rays));
+      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays);
+      refine_field(rest);
+      draw_gather(rest);
+    } else {
+      draw_gather(top_up(problem_, gathered_, lit, rays));
     }
-    draw_gather(top_up(problem_, gathered_, lit, rays));
     assemble();
   }
 
@@ -258,9 +261,9 @@ class RowSolver {
     g.seen = (*g.smoothing)(g.bounced);
   }
 
-  /// What samples found is a better field than the rows' for the next samples to read. Those that
-  /// go on are drawn anew against it.
-  void refine_field(const std::vector<Draw>& plan) {
+  /// What samples found is a better field than the rows' for the next samples to read. Where their
+  /// number doubles at least they are all drawn anew against it.
+  void refine_field(std::vector<Draw>& plan) {
     const std::vector<double> variance = indirect_variances();
     for (GroupLight<N>& g : groups_) {
       for (const SideIndex i : problem_.sides.active)
@@ -268,7 +271,12 @@ class RowSolver {
       smooth(g, variance);
       g.refined = true;
     }
-    for (const Draw& d : plan) gathered_.drop_sums(d.side);
+    for (Draw& d : plan) {
+      const std::uint32_t have = gathered_.valid(d.side) / kReplicates;
+      if (d.more < have) continue;  // a few more go to what there is
+      d.more += have;
+      gathered_.drop_sums(d.side);
+    }
   }
 
   SideValues<N> minus(SideValues<N> a, const SideValues<N>& b) const {
@@ -475,15 +483,15 @@ class RowSolver {
 
   /// Rounds of samples where they count most, until the estimate is below what was asked for.
   void reach_error() {
-    constexpr int kMaxRounds = 12;
+    constexpr int kMaxRounds = 32;
     constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
+    constexpr double kMargin = 0.95;        // a last round for little is dear
     const double target = problem_.options.error;
     for (int round = 0; round < kMaxRounds; ++round) {
       result_.error_reached = result_.error_estimate <= target;
       if (result_.error_reached || work_.stopped()) return;
       const double fixed = weighted(result_.caustic.variance);
       if (fixed > 0.5 * target * target && !more_photons()) return;
-      const double rest = std::sqrt(std::max(0.25 * target * target, target * target - fixed));
       const std::vector<Stratum<N>> strata{
           {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
            kShadowRayCost},
@@ -491,9 +499,8 @@ class RowSolver {
            1.0},
           {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
            kShadowRayCost}};
-      auto plans = plan_samples(problem_, weights_, strata, rest);
+      auto plans = plan_samples(problem_, weights_, strata, kMargin * target / result_.error_estimate);
       if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
-      for (Draw& d : plans[1]) d.more += gathered_.valid(d.side) / kReplicates;
       refine_field(plans[1]);
       work_.begin("direct light", 0.98);
       draw_direct(plans[0]);
