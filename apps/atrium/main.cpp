@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -35,9 +36,7 @@ struct Run {
   int operator()(const MaterialCompareCommand& c) const { return run_material_compare(c, stop); }
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   try {
     const Command command = parse_command_line(argc, argv);
     if (const auto* finished = std::get_if<Finished>(&command)) return finished->code;
@@ -50,4 +49,14 @@ int main(int argc, char** argv) {
   } catch (const std::exception& e) {
     return fail(1, e.what());
   }
+}
+
+}  // namespace
+
+/// Leaves without running static destructors: threads of TBB, of image libraries and the one that
+/// waits for signals may still use what those would destroy. All files are complete by then.
+int main(int argc, char** argv) {
+  const int code = run(argc, argv);
+  std::fflush(nullptr);
+  std::_Exit(code);
 }

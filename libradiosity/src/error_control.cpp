@@ -123,15 +123,18 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
 template <int N>
 std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
                                             const std::vector<double>& weights,
-                                            const std::vector<Stratum<N>>& strata, double target) {
+                                            const std::vector<Stratum<N>>& strata, double share) {
   constexpr double kGrowth = 4.0;
   // Lagrange: n = lambda sqrt(weight * variance / cost); the sum of weight * variance / n is then
   // root_costs / lambda.
   double root_costs = 0.0;
+  double now = 0.0;
   for (const Stratum<N>& s : strata)
-    for (const SideIndex i : problem.sides.active)
+    for (const SideIndex i : problem.sides.active) {
       root_costs += std::sqrt(weights[i] * s.variance[i] * s.cost);
-  const double lambda = root_costs / (target * target);
+      if (s.tally->valid(i) > 0) now += weights[i] * s.variance[i] / s.tally->valid(i);
+    }
+  const double lambda = now > 0.0 ? root_costs / (share * share * now) : 0.0;
   std::vector<std::vector<Draw>> plans(strata.size());
   for (std::size_t c = 0; c < strata.size(); ++c) {
     const Stratum<N>& s = strata[c];
@@ -139,8 +142,8 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
       const double have = s.tally->valid(i);
       const double wanted = std::min(lambda * std::sqrt(weights[i] * s.variance[i] / s.cost),
                                      kGrowth * std::max(have, 1.0 * kReplicates));
-      // Less than a quarter more is not worth a round.
-      if (!(wanted > 1.25 * have)) continue;
+      // Less than a tenth more is not worth it.
+      if (!(wanted > 1.1 * have)) continue;
       // Even numbers in each replicate; see HotPatches::kSamplesPerRay.
       const auto more = static_cast<std::uint32_t>(
           std::ceil((wanted - have) / (2.0 * kReplicates))) * 2;

@@ -52,7 +52,7 @@ class Smoothing {
 
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
 /// floor of 1 % of the mean. Sides that no light reaches do not count: they would only make the
-/// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 9).
+/// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 8).
 template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
                                                 const SideValues<N>& irradiance);
@@ -78,13 +78,13 @@ struct Stratum {
   double cost;                   ///< rays per sample
 };
 
-/// What to draw next so that the sum over strata of weight * variance / samples falls to
-/// `target`^2 at the least cost (Neyman allocation: samples as the root of weighted variance over
-/// cost); no side gets more than four times what it has.
+/// What to draw next so that the root of the sum over strata of weight * variance / samples falls
+/// to `share` of what it is, at the least cost (Neyman allocation: samples as the root of weighted
+/// variance over cost); no side gets more than four times what it has.
 template <int N>
 [[nodiscard]] std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
                                                           const std::vector<double>& weights,
                                                           const std::vector<Stratum<N>>& strata,
-                                                          double target);
+                                                          double share);
 
 }  // namespace atrium::radiosity

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <numbers>
 
+#include "joined_mesh.h"
 #include "material/bsdf.h"
+#include "radiosity/corners.h"
 #include "radiosity/elements.h"
 #include "scene/parallel.h"
 
@@ -9,7 +12,6 @@ namespace {
 
 using scene::PolygonMesh;
 using scene::Scene;
-using scene::Side;
 using scene::SurfaceField;
 
 constexpr double kLumensPerWatt = 179.0;  // white light given in watts
@@ -29,12 +31,50 @@ struct Surface {
   bool coupled = false;
 };
 
+/// Irradiance of one side at a cell or corner, and what leaves coupled materials' bodies.
+template <int N>
+struct Light {
+  Spectrum<N> direct, caustic, indirect, body;
+  [[nodiscard]] Spectrum<N> total() const { return direct + caustic + indirect; }
+};
+
+/// Values of all quantities with the same index.
+struct Values {
+  SurfaceField::Quantities irradiance, body;
+
+  template <int N>
+  [[nodiscard]] Light<N> at(std::size_t side) const {
+    const auto read = [side](const std::vector<float>& array) {
+      Spectrum<N> v;
+      if (!array.empty())
+        for (int k = 0; k < N; ++k) v[k] = array[side * N + static_cast<std::size_t>(k)];
+      return v;
+    };
+    return {read(irradiance.direct), read(irradiance.caustic), read(irradiance.indirect),
+            read(body.direct) + read(body.caustic) + read(body.indirect)};
+  }
+};
+
+SurfaceField::Quantities at_corners(const SurfaceField& field, const CellCorners& corners,
+                                    const SurfaceField::Quantities& q) {
+  return {corner_values(field, corners, q.direct), corner_values(field, corners, q.caustic),
+          corner_values(field, corners, q.indirect)};
+}
+
 template <int N>
 class Exporter {
  public:
   Exporter(const Scene& scene, const Elements& elements, const SurfaceField& field,
            const material::SpectralBasis& basis)
-      : scene_(scene), elements_(elements), field_(field), basis_(basis) {
+      : scene_(scene),
+        elements_(elements),
+        field_(field),
+        basis_(basis),
+        joined_(join_pieces(scene, elements)),
+        cells_(cell_corners(field)),
+        element_values_{field.irradiance, field.body_irradiance},
+        corner_values_{at_corners(field, cells_, field.irradiance),
+                       at_corners(field, cells_, field.body_irradiance)} {
     for (const material::Material& m : scene.materials) {
       materials_.push_back(material::resolve_material<N>(m, basis));
       emission_.push_back(m.emission_spectral_watts ? basis.resolve_emission<N>(m.emission)
@@ -44,80 +84,134 @@ class Exporter {
 
   PolygonMesh build() {
     collect_geometry();
-    const std::size_t cells = elements_.pieces.size();
-    std::vector<Record> cell(cells);
-    std::vector<Record> point(mesh_.points.size());
-    std::vector<Rgb> reflectance(cells);
-    std::vector<Rgb> emission(cells);
-    scene::parallel_for(cells, 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) evaluate(p, cell, point, reflectance, emission);
-    });
-    add_records(cell, mesh_.cell_arrays);
-    add_records(point, mesh_.point_arrays);
-    add_rgb(mesh_.cell_arrays, "reflectance", reflectance);
-    add_rgb(mesh_.cell_arrays, "emission", emission);
+    evaluate_polygons();
+    evaluate_points();
     add_scalars();
-    mesh_.field_data = {{"unit", field_.unit},
-                        {"length_unit", "m"},
-                        {"version", "1"},
-                        {"generator", "Atrium"},
-                        {"emission", "exitance of the front, included in radiosity"}};
+    mesh_.field_data = {
+        {"unit", field_.unit},   {"illuminance_unit", "lx"},
+        {"length_unit", "m"},    {"version", "1"},
+        {"generator", "Atrium"}, {"emission", "exitance of the front, included in radiosity"}};
     return std::move(mesh_);
   }
 
  private:
+  struct Sides {
+    Surface<N> front, back;
+  };
+
   void collect_geometry() {
-    element_of_.resize(elements_.pieces.size());
+    std::vector<std::uint32_t> element_of(elements_.pieces.size());
     for (std::uint32_t e = 0; e + 1 < elements_.first_piece.size(); ++e)
       for (std::uint32_t p = elements_.first_piece[e]; p < elements_.first_piece[e + 1]; ++p)
-        element_of_[p] = e;
-    for (std::size_t p = 0; p < elements_.pieces.size(); ++p) {
-      const ElementPiece piece = elements_.pieces[p];
-      first_point_.push_back(mesh_.points.size());
-      mesh_.polygon_sizes.push_back(static_cast<std::uint32_t>(piece.corners.size()));
-      for (const Vec3f& c : piece.corners) {
-        mesh_.polygon_points.push_back(static_cast<std::uint32_t>(mesh_.points.size()));
-        mesh_.points.push_back(c.cast<double>() + scene_.origin);
+        element_of[p] = e;
+    for (std::size_t k = 0; k < joined_.polygon_count(); ++k) {
+      element_of_.push_back(element_of[joined_.piece[k]]);
+      mesh_.polygon_sizes.push_back(joined_.first_corner[k + 1] - joined_.first_corner[k]);
+    }
+    mesh_.polygon_points = joined_.point;
+    for (const Vec3f& p : joined_.position)
+      mesh_.points.push_back(p.cast<double>() + scene_.origin);
+  }
+
+  void evaluate_polygons() {
+    const std::size_t count = joined_.polygon_count();
+    surfaces_.resize(count);
+    std::vector<Record> records(count);
+    std::vector<Rgb> reflectance(count);
+    std::vector<Rgb> emission(count);
+    scene::parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const ElementPiece piece = elements_.pieces[joined_.piece[k]];
+        const Vec2f uv = barycentric(scene_, piece, centre(piece));
+        const scene::SurfacePoint at =
+            scene::surface_point(scene_, piece.object, piece.triangle, uv.x(), uv.y());
+        surfaces_[k] = {surface(at, true), surface(at, false)};
+        reflectance[k] = basis_.to_rgb<N>(surfaces_[k].front.reflectance);
+        emission[k] = basis_.to_rgb<N>(surfaces_[k].front.exitance);
+        const std::size_t side = 2 * std::size_t{element_of_[k]};
+        records[k] =
+            record({element_values_.at<N>(side), element_values_.at<N>(side + 1)}, surfaces_[k]);
       }
-    }
+    });
+    add_records(records, mesh_.cell_arrays);
+    add_rgb(mesh_.cell_arrays, "reflectance", reflectance);
+    add_rgb(mesh_.cell_arrays, "emission", emission);
   }
 
-  void evaluate(std::size_t p, std::vector<Record>& cell, std::vector<Record>& point,
-                std::vector<Rgb>& reflectance, std::vector<Rgb>& emission) const {
-    const ElementPiece piece = elements_.pieces[p];
-    const Vec2f uv = barycentric_centre(piece);
-    const scene::SurfacePoint at =
-        scene::surface_point(scene_, piece.object, piece.triangle, uv.x(), uv.y());
-    const Surface<N> front = surface(at, true);
-    const Surface<N> back = surface(at, false);
-    reflectance[p] = basis_.to_rgb<N>(front.reflectance);
-    emission[p] = basis_.to_rgb<N>(front.exitance);
-    SurfaceField::Stencil own;
-    own.count = 1;
-    own.element[0] = element_of_[p];
-    own.weight[0] = 1.0f;
-    cell[p] = record(own, own, front, back);
-    for (std::size_t k = 0; k < piece.corners.size(); ++k) {
-      const auto stencil = [&](Side side) {
-        return field_.stencil(scene_, piece.object, piece.triangle, piece.corners[k], side);
-      };
-      point[first_point_[p] + k] = record(stencil(Side::Front), stencil(Side::Back), front, back);
-    }
+  static Vec3f centre(const ElementPiece& piece) {
+    Vec3f sum = Vec3f::Zero();
+    for (const Vec3f& c : piece.corners) sum += c;
+    return sum / static_cast<float>(piece.corners.size());
   }
 
-  Vec2f barycentric_centre(const ElementPiece& piece) const {
-    Vec3f centre = Vec3f::Zero();
-    for (const Vec3f& c : piece.corners) centre += c;
-    centre /= static_cast<float>(piece.corners.size());
-    const auto c = scene_.corners(piece.object, piece.triangle);
-    const Vec3d e1 = (c[1] - c[0]).cast<double>();
-    const Vec3d e2 = (c[2] - c[0]).cast<double>();
-    const Vec3d d = (centre - c[0]).cast<double>();
-    const Vec3d n = e1.cross(e2);
-    const double n2 = n.squaredNorm();
-    if (!(n2 > 0.0)) return {1.0f / 3.0f, 1.0f / 3.0f};
-    return {static_cast<float>(d.cross(e2).dot(n) / n2),
-            static_cast<float>(e1.cross(d).dot(n) / n2)};
+  void evaluate_points() {
+    std::vector<std::uint32_t> polygon_of(joined_.point.size());
+    for (std::uint32_t k = 0; k < joined_.polygon_count(); ++k)
+      for (std::uint32_t c = joined_.first_corner[k]; c < joined_.first_corner[k + 1]; ++c)
+        polygon_of[c] = k;
+    std::vector<std::vector<std::uint32_t>> users(mesh_.points.size());  // polygons, ascending
+    for (std::size_t c = 0; c < polygon_of.size(); ++c)
+      users[joined_.point[c]].push_back(polygon_of[c]);
+    std::vector<Record> records(users.size());
+    scene::parallel_for(users.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const std::array<Light<N>, 2> light{light_at(joined_.position[p], users[p], 0),
+                                            light_at(joined_.position[p], users[p], 1)};
+        records[p] = record(light, mean_surface(users[p]));
+      }
+    });
+    add_records(records, mesh_.point_arrays);
+  }
+
+  /// Mean over the facets that meet, each by the first of its elements whose side is known.
+  Light<N> light_at(const Vec3f& position, const std::vector<std::uint32_t>& polygons,
+                    std::size_t side) const {
+    Light<N> sum;
+    std::vector<std::uint32_t> facets;
+    const auto add = [&](std::uint32_t e) {
+      const std::array<float, 4> weight = corner_weights(field_, e, position);
+      for (std::size_t k = 0; k < 4; ++k)
+        accumulate(sum, corner_values_.at<N>(2 * std::size_t{cells_.of_element[e][k]} + side),
+                   weight[k]);
+    };
+    for (const std::uint32_t k : polygons) {
+      const std::uint32_t e = element_of_[k];
+      const std::uint32_t facet = field_.element_facet[e];
+      if (field_.valid[2 * std::size_t{e} + side] == 0 ||
+          std::find(facets.begin(), facets.end(), facet) != facets.end())
+        continue;
+      facets.push_back(facet);
+      add(e);
+    }
+    if (facets.empty()) {
+      add(element_of_[polygons.front()]);
+      return sum;
+    }
+    Light<N> mean;
+    accumulate(mean, sum, 1.0f / static_cast<float>(facets.size()));
+    return mean;
+  }
+
+  static void accumulate(Light<N>& sum, const Light<N>& light, float weight) {
+    sum.direct += weight * light.direct;
+    sum.caustic += weight * light.caustic;
+    sum.indirect += weight * light.indirect;
+    sum.body += weight * light.body;
+  }
+
+  Sides mean_surface(const std::vector<std::uint32_t>& polygons) const {
+    Sides mean;
+    const float share = 1.0f / static_cast<float>(polygons.size());
+    for (const std::uint32_t k : polygons)
+      for (const auto member : {&Sides::front, &Sides::back}) {
+        const Surface<N>& s = surfaces_[k].*member;
+        Surface<N>& m = mean.*member;
+        m.reflectance += share * s.reflectance;
+        m.transmittance += share * s.transmittance;
+        m.exitance += share * s.exitance;
+        m.coupled = s.coupled;  // of the object's material
+      }
+    return mean;
   }
 
   Spectrum<N> texture(const material::TextureSlot& slot, const Vec2f& uv) const {
@@ -142,29 +236,18 @@ class Exporter {
     return s;
   }
 
-  Spectrum<N> sum(const SurfaceField::Quantities& q, const SurfaceField::Stencil& s,
-                  Side side) const {
-    return field_.interpolate<N>(q.direct, s, side) + field_.interpolate<N>(q.caustic, s, side) +
-           field_.interpolate<N>(q.indirect, s, side);
+  Record record(const std::array<Light<N>, 2>& light, const Sides& surface) const {
+    const bool body = surface.front.coupled && !field_.body_irradiance.direct.empty();
+    const Spectrum<N> front = body ? light[0].body : light[0].total();
+    const Spectrum<N> back = body ? light[1].body : light[1].total();
+    return {one_side(light[0], surface.front, front, back),
+            one_side(light[1], surface.back, back, front)};
   }
 
-  Record record(const SurfaceField::Stencil& front, const SurfaceField::Stencil& back,
-                const Surface<N>& front_surface, const Surface<N>& back_surface) const {
-    const bool body = front_surface.coupled && !field_.body_irradiance.direct.empty();
-    const SurfaceField::Quantities& q = body ? field_.body_irradiance : field_.irradiance;
-    const Spectrum<N> own = sum(q, front, Side::Front);
-    const Spectrum<N> other = sum(q, back, Side::Back);
-    return {one_side(front, Side::Front, front_surface, own, other),
-            one_side(back, Side::Back, back_surface, other, own)};
-  }
-
-  Record::OneSide one_side(const SurfaceField::Stencil& s, Side side, const Surface<N>& surface,
-                           const Spectrum<N>& own, const Spectrum<N>& other) const {
-    const SurfaceField::Quantities& q = field_.irradiance;
+  Record::OneSide one_side(const Light<N>& light, const Surface<N>& surface, const Spectrum<N>& own,
+                           const Spectrum<N>& other) const {
     const auto rgb = [&](const Spectrum<N>& v) { return basis_.to_rgb<N>(v); };
-    return {rgb(field_.interpolate<N>(q.direct, s, side)),
-            rgb(field_.interpolate<N>(q.caustic, s, side)),
-            rgb(field_.interpolate<N>(q.indirect, s, side)), rgb(sum(q, s, side)),
+    return {rgb(light.direct), rgb(light.caustic), rgb(light.indirect), rgb(light.total()),
             rgb(surface.exitance + surface.reflectance * own + surface.transmittance * other)};
   }
 
@@ -202,11 +285,13 @@ class Exporter {
   void add_scalars() {
     const auto add = [&](const char* name, auto&& value) {
       PolygonMesh::Array a{name, 1, {}};
-      for (std::size_t p = 0; p < elements_.pieces.size(); ++p)
-        a.values.push_back(static_cast<float>(value(p)));
+      for (std::size_t k = 0; k < joined_.polygon_count(); ++k)
+        a.values.push_back(static_cast<float>(value(k)));
       mesh_.cell_arrays.push_back(std::move(a));
     };
-    const auto object = [&](std::size_t p) { return elements_.pieces[p].object.value; };
+    const auto object = [&](std::size_t p) {
+      return elements_.pieces[joined_.piece[p]].object.value;
+    };
     add("stderr", [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U]; });
     add("stderr_back",
         [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U + 1U]; });
@@ -224,8 +309,11 @@ class Exporter {
   material::SpectralBasis basis_;
   std::vector<material::ResolvedMaterial<N>> materials_;
   std::vector<Spectrum<N>> emission_;
-  std::vector<std::uint32_t> element_of_;
-  std::vector<std::size_t> first_point_;
+  JoinedMesh joined_;
+  CellCorners cells_;
+  Values element_values_, corner_values_;
+  std::vector<std::uint32_t> element_of_;  // by polygon
+  std::vector<Sides> surfaces_;            // by polygon, at its centre
   PolygonMesh mesh_;
 };
 

@@ -74,22 +74,6 @@ struct Landing {
   return !front && closed_opaque[hit.object.value] != 0;
 }
 
-/// What follow() needs of a world without elements: every diffuse surface is met, shaded.
-template <int N>
-struct Surfaces {
-  const scene::Shading<N>& shading;
-  struct {
-    std::vector<std::uint8_t> closed_opaque, plain;
-  } sides;
-
-  Surfaces(const scene::Shading<N>& s, std::vector<std::uint8_t> closed_opaque)
-      : shading(s),
-        sides{std::move(closed_opaque), std::vector<std::uint8_t>(s.scene().objects.size(), 0)} {}
-  [[nodiscard]] SideIndex side_at(scene::ObjectId, std::uint32_t, const Vec3f&, scene::Side) const {
-    return 0;
-  }
-};
-
 /// Takes off what the air absorbs, of which it lets `transmittance` pass.
 template <int N>
 void pass_medium(const Spectrum<N>& transmittance, Spectrum<N>& weight, PathEnd<N>& end) {

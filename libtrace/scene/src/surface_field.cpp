@@ -112,62 +112,86 @@ class StencilMaker {
     const float wy = y - 0.5f - static_cast<float>(iy);
     std::array<SurfaceField::Cell, 4> cells;
     std::array<float, 4> w{};
-    float sum = 0.0f;
-    bool plain = result_.count == 0;  // four elements of this level, none there yet
+    unsigned known = 0;
     for (unsigned k = 0; k < 4; ++k) {
       w[k] = ((k & 1U) != 0 ? wx : 1.0f - wx) * ((k & 2U) != 0 ? wy : 1.0f - wy);
-      if (!(w[k] > 0.0f)) continue;
       cells[k] = field_.cell(facet_, level, ix + (k & 1U), iy + (k >> 1U));
-      if (!any_valid(cells[k].node)) {
-        w[k] = 0.0f;
-        continue;
-      }
-      plain = plain && cells[k].level == level && !SurfaceField::is_inner(cells[k].node);
-      sum += w[k];
+      if (valid_area(cells[k].node) > 0.0f) known |= 1U << k;
     }
-    if (!(sum > 0.0f)) return false;
+    if (known == 0) return false;
+    const auto is_known = [known](unsigned k) { return (known >> k & 1U) != 0; };
+    const std::array<float, 4> own = w;
     for (unsigned k = 0; k < 4; ++k) {
-      if (!(w[k] > 0.0f)) continue;
-      if (plain)
-        push(cells[k].node, w[k] / sum * weight);
-      else
-        add_cell(cells[k], level, ix + (k & 1U), iy + (k >> 1U), w[k] / sum * weight);
+      if (is_known(k) || !(own[k] > 0.0f)) continue;
+      // From the neighbours along the axes if there are any, else along both from the diagonal.
+      const bool u = is_known(k ^ 1U);
+      const bool v = is_known(k ^ 2U);
+      const float share = weight * (u && v ? 0.5f : 1.0f) * own[k];
+      const unsigned diagonal = k ^ 3U;
+      const auto extend = [&](unsigned from, bool along_u) {
+        const bool upwards = (k & (along_u ? 1U : 2U)) != 0;
+        add_slope(level, ix + (from & 1U), iy + (from >> 1U), along_u, upwards ? -1 : 1, share);
+      };
+      w[k] = 0.0f;
+      if (u) w[k ^ 1U] += (v ? 0.5f : 1.0f) * own[k];
+      if (v) w[k ^ 2U] += (u ? 0.5f : 1.0f) * own[k];
+      if (!u && !v) w[diagonal] += own[k];
+      if (u || !v) extend(u ? k ^ 1U : diagonal, true);
+      if (v || !u) extend(v ? k ^ 2U : diagonal, false);
     }
+    for (unsigned k = 0; k < 4; ++k)
+      if (w[k] > 0.0f) add_cell(cells[k], level, ix + (k & 1U), iy + (k >> 1U), weight * w[k]);
     return true;
   }
 
   void add(std::uint32_t element, float weight) {
     int i = 0;
     while (i < result_.count && result_.element[i] != element) ++i;
-    if (i < result_.count)
-      result_.weight[i] += weight;
-    else if (i < SurfaceField::Stencil::kCapacity)
-      push(element, weight);
+    if (i == SurfaceField::Stencil::kCapacity) return;
+    if (i == result_.count) {
+      result_.element[result_.count++] = element;
+      result_.weight[i] = 0.0f;
+    }
+    result_.weight[i] += weight;
   }
 
+  /// One element alone, if it is valid.
+  void add(std::uint32_t element) {
+    if (usable(element)) add(element, 1.0f);
+  }
+
+ private:
   [[nodiscard]] bool usable(std::uint32_t element) const {
     return element != kNone && field_.valid[std::size_t{element} * 2 + side_] != 0;
   }
 
- private:
-  void push(std::uint32_t element, float weight) {
-    result_.element[result_.count] = element;
-    result_.weight[result_.count++] = weight;
-  }
-
-  [[nodiscard]] bool any_valid(std::uint32_t node) const {
-    if (!SurfaceField::is_inner(node)) return usable(node);
-    return any_valid(field_.child(node, 0, 0)) || any_valid(field_.child(node, 1, 0)) ||
-           any_valid(field_.child(node, 0, 1)) || any_valid(field_.child(node, 1, 1));
-  }
-
-  /// Of the valid elements below a node.
+  /// Area of the valid elements below a node, 0 if there are none.
   [[nodiscard]] float valid_area(std::uint32_t node) const {
     if (!SurfaceField::is_inner(node)) return usable(node) ? field_.element_area[node] : 0.0f;
     float area = 0.0f;
     for (const std::uint32_t k : {0U, 1U, 2U, 3U})
       area += valid_area(field_.child(node, k, k >> 1U));
     return area;
+  }
+
+  /// The slope at a cell by the cells that follow it in a direction. Where one of them is part of a
+  /// larger leaf, by the cells of that level.
+  void add_slope(int level, std::int64_t x, std::int64_t y, bool along_u, int step, float weight) {
+    if (result_.slope_count == SurfaceField::Stencil::kSlopes) return;
+    for (; level >= 0; --level, x >>= 1, y >>= 1, weight *= 0.5f) {
+      std::array<std::uint32_t, 3> nodes{};
+      bool coarser = false;
+      for (int k = 0; k < 3; ++k) {
+        const SurfaceField::Cell c =
+            field_.cell(facet_, level, x + (along_u ? k * step : 0), y + (along_u ? 0 : k * step));
+        if (!(valid_area(c.node) > 0.0f)) return;
+        nodes[static_cast<std::size_t>(k)] = c.node;
+        coarser = coarser || c.level < level;
+      }
+      if (coarser) continue;
+      result_.slope[result_.slope_count++] = {nodes[0], nodes[1], nodes[2], weight};
+      return;
+    }
   }
 
   void add_cell(const SurfaceField::Cell& cell, int level, std::int64_t x, std::int64_t y,
@@ -222,18 +246,20 @@ SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
   if (p.facet == nullptr) return s;
   const std::uint32_t here = nearest_element(*this, p);
   if (here == kNone) return s;
-  StencilMaker maker(*this, *p.facet, side, s);
   const int level = element_level[here];
-  const auto scale = static_cast<float>(1U << static_cast<unsigned>(level));
-  if (!maker.add_block(level, p.x * scale, p.y * scale, 1.0f)) {
-    if (maker.usable(here)) maker.add(here, 1.0f);
-    return s;
-  }
-  if (s.count == Stencil::kCapacity) {
-    float sum = 0.0f;
-    for (int i = 0; i < s.count; ++i) sum += s.weight[i];
-    for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
-  }
+  const float scale = std::ldexp(1.0f, level);
+  s = stencil(*p.facet, level, p.x * scale, p.y * scale, side);
+  if (s.count == 0) StencilMaker(*this, *p.facet, side, s).add(here);
+  return s;
+}
+
+SurfaceField::Stencil SurfaceField::stencil(const Facet& facet, int level, float x, float y,
+                                            Side side) const {
+  Stencil s;
+  if (!StencilMaker(*this, facet, side, s).add_block(level, x, y, 1.0f)) return s;
+  float sum = 0.0f;
+  for (int i = 0; i < s.count; ++i) sum += s.weight[i];
+  for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
   return s;
 }
 

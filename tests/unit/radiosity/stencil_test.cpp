@@ -2,75 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include "unit/radiosity/refined_scenes.h"
+#include "unit/radiosity/sampled_wall.h"
 
 // SurfaceField::stencil() over elements of mixed levels.
 namespace atrium::radiosity {
 namespace {
 
-using scene::ObjectId;
 using scene::Scene;
 using scene::Side;
 using scene::SurfaceField;
-using test::SceneMaker;
-
-constexpr float kEdge = 4.0f;
-
-/// A square in the plane z = 0 whose elements hold the means of a function of (x, y).
-class Sampled {
- public:
-  template <class F>
-  Sampled(const Scene& scene, const Elements& e, F&& f) : scene_(scene), field_(e.layout) {
-    field_.lanes = 1;
-    field_.valid.assign(2 * field_.element_count(), 1);
-    for (std::uint32_t i = 0; i < field_.element_count(); ++i) {
-      // Cells of the square are whole: means by the 3 x 3 Gauss rule, exact to degree 5.
-      const SurfaceField::Facet& facet = field_.facets[0];
-      const Vec3d u = (facet.axis_u / facet.axis_u.squaredNorm()).cast<double>();
-      const Vec3d v = (facet.axis_v / facet.axis_v.squaredNorm()).cast<double>();
-      const double scale = std::ldexp(1.0, -field_.element_level[i]);
-      const double node = std::sqrt(0.6);
-      double mean = 0.0;
-      for (const auto& [a, wa] : {std::pair(-node, 5.0), {0.0, 8.0}, {node, 5.0}})
-        for (const auto& [b, wb] : {std::pair(-node, 5.0), {0.0, 8.0}, {node, 5.0}}) {
-          const Vec3d p =
-              facet.origin.cast<double>() + scale * (u * (field_.element_x[i] + 0.5 + 0.5 * a) +
-                                                     v * (field_.element_y[i] + 0.5 + 0.5 * b));
-          mean += wa * wb / 324.0 * f(p.x(), p.y());
-        }
-      field_.irradiance.direct.push_back(static_cast<float>(mean));
-      field_.irradiance.direct.push_back(0.0f);
-    }
-  }
-
-  [[nodiscard]] SurfaceField::Stencil stencil(float x, float y) const {
-    return field_.stencil(scene_, ObjectId(0U), 0, {x, y, 0.0f}, Side::Front);
-  }
-  [[nodiscard]] double at(float x, float y) const {
-    return static_cast<double>(
-        field_.interpolate<1>(field_.irradiance.direct, stencil(x, y), Side::Front)[0]);
-  }
-  SurfaceField& field() { return field_; }
-
- private:
-  const Scene& scene_;
-  SurfaceField field_;
-};
-
-Scene square_wall() {
-  SceneMaker maker;
-  maker.quad(maker.material(test::diffuse(0.5)), {0, 0, 0}, {kEdge, 0, 0}, {kEdge, kEdge, 0},
-             {0, kEdge, 0});
-  return maker.take();
-}
-
-Elements graded(const Scene& scene, double size, int rounds, std::uint32_t seed) {
-  Elements e = make_elements(scene, {.element_size = size});
-  std::mt19937 random(seed);
-  for (int round = 0; round < rounds; ++round)
-    e = refine(scene, e, test::random_marks(e, 0.15, random)).elements;
-  return e;
-}
+using test::graded;
+using test::kEdge;
+using test::Sampled;
+using test::square_wall;
 
 /// Calls f(x, y) for points at least `margin` inside the square.
 template <class F>
@@ -105,8 +49,7 @@ TEST(Stencil, WeightsArePositiveAndSumToOne) {
   EXPECT_LT(longest, SurfaceField::Stencil::kCapacity);
 }
 
-// Cell means of a linear function are its values at the centres. A margin of a cell of level 0 and
-// a half keeps off the rim, where the value is constant beyond the outermost centres.
+// Cell means of a linear function are its values at the centres.
 TEST(Stencil, LinearFunctionsAreMetOnGradedMeshes) {
   const Scene scene = square_wall();
   for (const int rounds : {0, 1, 3, 5}) {
@@ -115,7 +58,7 @@ TEST(Stencil, LinearFunctionsAreMetOnGradedMeshes) {
     const auto f = [](double x, double y) { return 2.0 + 0.7 * x - 0.4 * y; };
     const Sampled field(scene, e, f);
     // Values up to 5 in float, coordinates of 16 cells: a few units in the seventh digit.
-    for_points(0.375, 2000, [&](float x, float y) { EXPECT_NEAR(field.at(x, y), f(x, y), 1e-5); });
+    for_points(0.0, 2000, [&](float x, float y) { EXPECT_NEAR(field.at(x, y), f(x, y), 1e-5); });
   }
 }
 
@@ -133,7 +76,7 @@ TEST(Stencil, SmoothFunctionsConvergeInSecondOrder) {
       const Sampled field(scene, e, f);
       double largest = 0.0;
       double squares = 0.0;
-      for_points(0.75, 4000, [&](float x, float y) {
+      for_points(0.0, 4000, [&](float x, float y) {
         const double error = field.at(x, y) - f(x, y);
         largest = std::max(largest, std::abs(error));
         squares += error * error;
@@ -188,6 +131,67 @@ TEST(Stencil, StaysWithinTheValues) {
     EXPECT_GE(field.at(x, y), 1.0 - 1e-5);
     EXPECT_LE(field.at(x, y), 7.0 + 1e-5);
   });
+}
+
+// Where the edge of light runs between the first and the second cell from the rim, a line through
+// both would be far off: the value stays constant.
+TEST(Stencil, AnEdgeOfLightIsNotContinuedBeyondTheRim) {
+  const Scene scene = square_wall();
+  const Elements e = make_elements(scene, {.element_size = 0.5});
+  const Sampled field(scene, e, [](double x, double) { return x > 0.5 ? 7.0 : 1.0; });
+  for_points(0.0, 4000, [&](float x, float y) {
+    EXPECT_GE(field.at(x, y), 1.0 - 1e-5);
+    EXPECT_LE(field.at(x, y), 7.0 + 1e-5);
+    if (x < 0.25f) {
+      EXPECT_NEAR(field.at(x, y), 1.0, 1e-5);
+    }
+  });
+}
+
+// A line that falls to less than nothing before the rim ends at nothing.
+TEST(Stencil, IsNeverNegative) {
+  const Scene scene = square_wall();
+  const Elements e = make_elements(scene, {.element_size = 0.5});
+  const Sampled field(scene, e, [](double x, double) { return std::max(0.0, x - 0.2); });
+  for_points(0.0, 4000, [&](float x, float y) { EXPECT_GE(field.at(x, y), 0.0); });
+}
+
+// A point light 1 m before a wall: the whole wall to its rim, relative to the mean. Constant beyond
+// the outermost centres it would be of first order: rms_constant.
+TEST(Stencil, TheRimOfALitWallIsOfSecondOrder) {
+  const Scene scene = square_wall();
+  const auto f = [](double x, double y) {
+    return std::pow((x - 1.7) * (x - 1.7) + (y - 2.2) * (y - 2.2) + 1.0, -1.5);
+  };
+  double before = 0.0;
+  for (const double size : {0.5, 0.25, 0.125}) {
+    const Elements e = make_elements(scene, {.element_size = size});
+    const Sampled field(scene, e, f);
+    double squares = 0.0;
+    double constant = 0.0;
+    double elements = 0.0;
+    double sum = 0.0;
+    int rim = 0;
+    for_points(0.0, 20000, [&](float x, float y) {
+      const double exact = f(x, y);
+      sum += exact;
+      elements += std::pow(field.element(x, y) - exact, 2);
+      if (std::min({x, y, kEdge - x, kEdge - y}) > 0.5f * static_cast<float>(size)) return;
+      ++rim;
+      squares += std::pow(field.at(x, y) - exact, 2);
+      constant += std::pow(field.without_slopes(x, y) - exact, 2);
+    });
+    const double mean = sum / 20000;
+    const double rms = std::sqrt(squares / rim) / mean;
+    const std::string name = std::to_string(size).substr(0, 5);
+    RecordProperty("rim_rms " + name, std::to_string(rms));
+    RecordProperty("rim_rms_constant " + name, std::to_string(std::sqrt(constant / rim) / mean));
+    RecordProperty("rms_of_elements " + name, std::to_string(std::sqrt(elements / 20000) / mean));
+    if (before > 0.0) {
+      EXPECT_GT(std::log2(before / rms), 1.7);
+    }
+    before = rms;
+  }
 }
 
 // Elements whose side was not computed hold rubbish: none of it is seen, on any level.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -103,19 +105,33 @@ struct SurfaceField {
   /// Bilinear between the four cells of the leaf's own level round the point. Where such a cell is
   /// divided further its value is the mean of its leaves; where a coarser leaf covers it, the
   /// coarser level is interpolated at its centre. So linear functions (given by their cell means)
-  /// are met exactly inside a facet, on graded meshes too, and no new extrema arise; beyond the
-  /// outermost centres the value is constant. Across a change of level there is a step of second
-  /// order.
+  /// are met exactly, on graded meshes too, and no new extrema arise inside a facet. Across a change
+  /// of level there is a step of second order.
+  ///
+  /// A cell that is missing (rim, hole, invalid) counts with its neighbour's value and, where three
+  /// cells in line with it are known, with the lesser of their two differences if both have one
+  /// sign (minmod): the value goes on as a line, past an edge of light it stays constant.
   struct Stencil {
     static constexpr int kCapacity = 64;  ///< what does not fit is left out
+    static constexpr int kSlopes = 16;    ///< as well
+    /// Adds weight * minmod(near - next, next - third); nodes, inner ones with their mean.
+    struct Slope {
+      std::uint32_t near, next, third;
+      float weight;
+    };
     int count = 0;
+    int slope_count = 0;
     std::uint32_t element[kCapacity];
     float weight[kCapacity];
+    Slope slope[kSlopes];
   };
   [[nodiscard]] Stencil stencil(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                 const Vec3f& position, Side side) const;
+  /// The same at a place of a facet's grid, in cells of a level, interpolated at that level.
+  [[nodiscard]] Stencil stencil(const Facet& facet, int level, float x, float y, Side side) const;
 
-  /// Interpolated value of one array (size element_count * 2 * N); 0 where nothing is known.
+  /// Interpolated value of one array (size element_count * 2 * N), at least 0; 0 where nothing is
+  /// known.
   template <int N>
   [[nodiscard]] Spectrum<N> interpolate(const std::vector<float>& array, const Stencil& s, Side side) const {
     Spectrum<N> r;
@@ -124,7 +140,43 @@ struct SurfaceField {
       const float* p = &array[(static_cast<std::size_t>(s.element[i]) * 2 + static_cast<std::size_t>(side)) * N];
       for (int k = 0; k < N; ++k) r[k] += s.weight[i] * p[k];
     }
+    for (int i = 0; i < s.slope_count; ++i) {
+      const Stencil::Slope& slope = s.slope[i];
+      const Spectrum<N> next = mean<N>(array, slope.next, side);
+      const Spectrum<N> outer = mean<N>(array, slope.near, side) - next;
+      const Spectrum<N> inner = next - mean<N>(array, slope.third, side);
+      for (int k = 0; k < N; ++k)
+        if (outer[k] * inner[k] > 0.0f)
+          r[k] += slope.weight * (std::abs(outer[k]) < std::abs(inner[k]) ? outer[k] : inner[k]);
+    }
+    if (s.slope_count > 0)
+      for (int k = 0; k < N; ++k) r[k] = std::max(r[k], 0.0f);
     return r;
+  }
+
+ private:
+  /// Mean of an array over the valid elements below a node; 0 if there are none.
+  template <int N>
+  [[nodiscard]] Spectrum<N> mean(const std::vector<float>& array, std::uint32_t node,
+                                 Side side) const {
+    Spectrum<N> sum;
+    const float area = integrate<N>(array, node, side, sum);
+    return area > 0.0f ? sum * (1.0f / area) : Spectrum<N>();
+  }
+  /// Adds value times area to `sum`. \return the area.
+  template <int N>
+  float integrate(const std::vector<float>& array, std::uint32_t node, Side side,
+                  Spectrum<N>& sum) const {
+    if (is_inner(node)) {
+      float area = 0.0f;
+      for (const std::uint32_t k : {0U, 1U, 2U, 3U})
+        area += integrate<N>(array, child(node, k, k >> 1U), side, sum);
+      return area;
+    }
+    const std::size_t i = std::size_t{node} * 2 + static_cast<std::size_t>(side);
+    if (node == kNone || valid[i] == 0) return 0.0f;
+    for (int k = 0; k < N; ++k) sum[k] += element_area[node] * array[i * N + static_cast<std::size_t>(k)];
+    return element_area[node];
   }
 };
 
