@@ -154,7 +154,6 @@ class RowSolver {
   /// the rows' own noise would stay in the second bounce otherwise. Few rays are not worth it.
   void gather_twice(int rays) {
     constexpr int kWorthwhile = 64;
-<<<<<<< HEAD
     if (stage_ < Stage::Gather) {
       const std::vector<SideIndex> lit = lit_sides();
       if (rays >= kWorthwhile) {
@@ -163,24 +162,12 @@ class RowSolver {
         assemble();
         if (stop || paused(Stage::FirstGather)) return;
       }
-      const std::vector<Draw> plan = top_up(problem_, gathered_, lit, rays);
-      gather_goals_ = goals_of(plan, gathered_);
-      if (rays >= kWorthwhile) refine_field(plan);
+      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays);
+      if (rays >= kWorthwhile) refine_field(rest);
+      gather_goals_ = goals_of(rest, gathered_);
     }
     draw_gather(missing(gather_goals_, gathered_));
     (void)paused(Stage::Gather);
-=======
-    const std::vector<SideIndex> lit = lit_sides();
-    if (rays >= kWorthwhile) {
-      draw_gather(top_up(problem_, gathered_, lit, rays / 4));
-      assemble();
-      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays);
-      refine_field(rest);
-      draw_gather(rest);
-    } else {
-      draw_gather(top_up(problem_, gathered_, lit, rays));
-    }
->>>>>>> main
     assemble();
     (void)paused(Stage::Gather);
   }
@@ -506,20 +493,12 @@ class RowSolver {
     g.seen = (*g.smoothing)(g.bounced);
   }
 
-<<<<<<< HEAD
-  /// What samples found is a better field than the rows' for the next samples to read. Those that
-  /// go on are drawn anew against it.
-  void refine_field(const std::vector<Draw>& plan) {
-    iterations_before_assembly_ = result_.iteration.iterations;
-    for (std::size_t n = 0; n < groups_.size(); ++n) {
-      GroupLight<N>& g = groups_[n];
-=======
   /// What samples found is a better field than the rows' for the next samples to read. Where their
   /// number doubles at least they are all drawn anew against it.
   void refine_field(std::vector<Draw>& plan) {
-    const std::vector<double> variance = indirect_variances();
-    for (GroupLight<N>& g : groups_) {
->>>>>>> main
+    iterations_before_assembly_ = result_.iteration.iterations;
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      GroupLight<N>& g = groups_[n];
       for (const SideIndex i : problem_.sides.active)
         g.bounced[i] = exchange(problem_, g.indirect, i);
       smooth(g, indirect_variances(n));
@@ -775,41 +754,11 @@ class RowSolver {
 
   /// Rounds of samples where they count most, until the estimate is below what was asked for.
   void reach_error() {
-<<<<<<< HEAD
-    constexpr int kMaxRounds = 12;
+    constexpr int kMaxRounds = 32;
     for (; round_ < kMaxRounds; ++round_) {
       result_.error_reached = result_.error_estimate <= problem_.options.error;
       if (result_.error_reached || work_.stopped()) return;
       if (!plan_round() || !finish_round()) break;
-=======
-    constexpr int kMaxRounds = 32;
-    constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
-    constexpr double kMargin = 0.95;        // a last round for little is dear
-    const double target = problem_.options.error;
-    for (int round = 0; round < kMaxRounds; ++round) {
-      result_.error_reached = result_.error_estimate <= target;
-      if (result_.error_reached || work_.stopped()) return;
-      const double fixed = weighted(result_.caustic.variance);
-      if (fixed > 0.5 * target * target && !more_photons()) return;
-      const std::vector<Stratum<N>> strata{
-          {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
-           kShadowRayCost},
-          {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours),
-           1.0},
-          {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
-           kShadowRayCost}};
-      auto plans = plan_samples(problem_, weights_, strata, kMargin * target / result_.error_estimate);
-      if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
-      refine_field(plans[1]);
-      work_.begin("direct light", 0.98);
-      draw_direct(plans[0]);
-      take_direct();
-      draw_hot(plans[2]);
-      solve_bounces();
-      work_.begin("gathering", 0.98);
-      draw_gather(plans[1]);
-      assemble();
->>>>>>> main
     }
     result_.error_reached = result_.error_estimate <= problem_.options.error;
   }
@@ -817,24 +766,24 @@ class RowSolver {
   /// Says what the next round has to draw; false if nothing.
   bool plan_round() {
     constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
+    constexpr double kMargin = 0.95;        // a last round for little is dear
     const double target = problem_.options.error;
     const double fixed = weighted(result_.caustic.variance);
     const bool photons = fixed > 0.5 * target * target;
     if (photons && !more_photons()) return false;
-    const double rest = std::sqrt(std::max(0.25 * target * target, target * target - fixed));
     const std::vector<Stratum<N>> strata{
         {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
          kShadowRayCost},
         {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours), 1.0},
         {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
          kShadowRayCost}};
-    auto plans = plan_samples(problem_, weights_, strata, rest);
+    auto plans =
+        plan_samples(problem_, weights_, strata, kMargin * target / result_.error_estimate);
     if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
-    for (Draw& d : plans[1]) d.more += gathered_.valid(d.side) / kReplicates;
+    refine_field(plans[1]);
     direct_goals_ = goals_of(plans[0], direct_);
     gather_goals_ = goals_of(plans[1], gathered_);
     shot_goals_ = goals_of(plans[2], shot_);
-    refine_field(plans[1]);
     stage_ = Stage::RoundLight;
     return true;
   }
