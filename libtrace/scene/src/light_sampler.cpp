@@ -323,6 +323,16 @@ struct LightSampler<N>::Impl {
     return two_sided(t) ? std::abs(c) : std::max(0.0f, c);
   }
 
+  // Is p in the triangle's plane as far as rounding can tell? Nothing of it is seen from there, and
+  // its solid angle would be noise between 0 and 2 pi. Bound as for SurfacePoint::error.
+  static bool in_plane(const std::array<Vec3f, 3>& c, const Vec3f& p) {
+    const Vec3d a = c[0].cast<double>();
+    const Vec3d n = (c[1].cast<double>() - a).cross(c[2].cast<double>() - a);
+    const Vec3f size = c[0].cwiseAbs().cwiseMax(c[1].cwiseAbs()).cwiseMax(c[2].cwiseAbs());
+    return !(std::abs((p.cast<double>() - a).dot(n)) >
+             28.0 * 0x1p-24 * n.cwiseAbs().dot(size.cast<double>()));
+  }
+
   struct Place {
     SurfacePoint point;
     Vec3f wi;
@@ -331,6 +341,7 @@ struct LightSampler<N>::Impl {
   // A point on an emissive triangle seen from p: by solid angle where that is well conditioned.
   std::optional<Place> place_on(const EmissiveTriangle& t, const Vec3f& p, const Vec2f& u) const {
     const std::array<Vec3f, 3> c = scene->corners(t.object, t.triangle);
+    if (in_plane(c, p)) return std::nullopt;
     const SphericalTriangle seen(c, p);
     Vec2f bary = uniform_triangle(u);
     if (seen.usable()) {
@@ -368,6 +379,7 @@ struct LightSampler<N>::Impl {
       if (!(distance2 > 0.0f)) return std::nullopt;
       s.distance = std::sqrt(distance2);
       s.wi = d / s.distance;
+      s.end = light.position;
       s.radiance = intensity_towards(light, -s.wi) / distance2;
       s.dirac = true;
       s.light = light.index;
@@ -379,6 +391,10 @@ struct LightSampler<N>::Impl {
     if (!place) return std::nullopt;
     s.wi = place->wi;
     s.distance = place->distance;
+    // The direction's rounding moves the ray's end by its share of the distance.
+    SurfacePoint seen = place->point;
+    seen.error += 0x1p-20f * place->distance;
+    s.end = offset_origin(seen, -place->wi);
     s.radiance = radiance_at(place->point);
     s.pdf *= place->pdf;
     s.light = static_cast<std::uint32_t>(scene->lights.size()) + index;
