@@ -66,8 +66,8 @@ PathEnd<N> follow(const Problem<N>& problem, scene::Ray ray, Spectrum<N> weight,
     if (!media.empty()) weight *= exp_minus(media.extinction(), distance);
     const Vec3f wo_world = -ray.direction;
     const scene::Interaction<N> at = shading.interact(*hit, wo_world);
-    if (depth == 0 && at.side == scene::Side::Back &&
-        problem.sides.closed_opaque[hit->object.value] != 0) {
+    if (depth == 0 &&
+        problem.sides.inner[hit->object.value] == static_cast<std::uint8_t>(at.side)) {
       end.inside_solid = true;
       return end;
     }

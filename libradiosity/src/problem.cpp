@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
-#include "follow.h"
+#include "lit_spaces.h"
 
 namespace atrium::radiosity {
 
-using scene::Counter;
-using scene::Counters;
-using scene::ObjectId;
 using scene::Side;
 using scene::SurfaceField;
 using scene::SurfacePoint;
@@ -80,8 +77,8 @@ template <int N>
 class SideProperties {
  public:
   SideProperties(const scene::Shading<N>& shading, const Elements& elements,
-                 const ElementPoints& points, std::uint64_t seed)
-      : shading_(shading), elements_(elements), points_(points), seed_(seed) {}
+                 const ElementPoints& points, const LitSpaces& lit, std::uint64_t seed)
+      : shading_(shading), elements_(elements), points_(points), lit_(lit), seed_(seed) {}
 
   void find(Sides<N>& sides, std::uint32_t element) const {
     const ElementPiece& piece = elements_.pieces[elements_.first_piece[element]];
@@ -89,15 +86,29 @@ class SideProperties {
     const auto& material = shading_.material(object.material);
     const bool colours = !shading_.scene().meshes[object.mesh.value].colors.empty();
     const int count = any_texture(material) || colours ? 16 : 1;
+    const LitSpaces::Bodies near = lit_.near(elements_, element);
     for (const Side side : {Side::Front, Side::Back}) {
-      if (side == Side::Back &&
-          (sides.closed_opaque[piece.object.value] != 0 || material.source->one_sided))
-        continue;
+      if (side == Side::Back && material.source->one_sided) continue;
+      if (sides.inner[piece.object.value] == static_cast<std::uint8_t>(side)) continue;
+      if (!reached(element, side, near)) continue;
       average(sides, element, side, count);
     }
   }
 
  private:
+  /// Can light get to any of a few points of the side?
+  bool reached(std::uint32_t element, Side side, const LitSpaces::Bodies& near) const {
+    if (near.empty()) return true;
+    constexpr std::uint32_t kPoints = 4;
+    for (std::uint32_t k = 0; k < kPoints; ++k) {
+      scene::Sampler sampler(seed_ ^ 0x1175U, element, k);
+      const SurfacePoint p = points_.sample(element, sampler.next_2d());
+      if (lit_.contains(scene::offset_origin(p, side == Side::Front ? p.ng : Vec3f(-p.ng)), near))
+        return true;
+    }
+    return false;
+  }
+
   void average(Sides<N>& sides, std::uint32_t element, Side side, int count) const {
     const SideIndex i = side_index(element, side);
     for (int k = 0; k < count; ++k) {
@@ -122,38 +133,9 @@ class SideProperties {
   const scene::Shading<N>& shading_;
   const Elements& elements_;
   const ElementPoints& points_;
+  const LitSpaces& lit_;
   std::uint64_t seed_;
 };
-
-/// Closed opaque bodies whose inside light reaches directly are rooms, not solids: their inner
-/// faces take part. Decided by the first surfaces that light from the sources meets.
-template <int N>
-void find_closed_bodies(const scene::Shading<N>& shading, Sides<N>& sides) {
-  const scene::Scene& scene = shading.scene();
-  sides.closed_opaque.assign(scene.objects.size(), 0);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const material::Material& m = scene.material_of(ObjectId(i));
-    const material::MaterialTraits t = material::traits(m);
-    sides.closed_opaque[i] = scene.mesh_of(ObjectId(i)).closed &&
-                             m.medium == material::Material::Medium::Opaque &&
-                             !t.diffuse_transmission && !t.alpha_mask;
-  }
-  Counters unused;
-  std::vector<std::uint32_t> inner(scene.objects.size(), 0);
-  constexpr std::uint32_t kProbes = 4096;
-  for (std::uint32_t i = 0; i < kProbes && !shading.lights().empty(); ++i) {
-    scene::Sampler sampler(0x5eed, 0, i);
-    const float choice = sampler.next_1d();
-    const Vec2f position = sampler.next_2d();
-    const auto e = shading.lights().sample_emission(choice, position, sampler.next_2d());
-    if (!e) continue;
-    const auto hit = shading.closest({e->origin, e->direction}, unused, Counter::RaysProbe);
-    if (hit && hit->ng.dot(e->direction) > 0.0f) ++inner[hit->object.value];
-  }
-  // A stray ray through a crack makes no room; one in a thousand is a lamp inside.
-  for (std::size_t i = 0; i < inner.size(); ++i)
-    if (inner[i] > kProbes / 1000) sides.closed_opaque[i] = 0;
-}
 
 bool specular_scene(const scene::Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const scene::Object& o) {
@@ -177,8 +159,9 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
   sides.reflectance.assign(n, {});
   sides.transmittance.assign(n, {});
   sides.coupled.assign(n / 2, 0);
-  find_closed_bodies(shading, sides);
-  const SideProperties<N> properties(shading, elements, points, options.seed);
+  const LitSpaces lit(shading.scene());
+  sides.inner = lit.inner_sides();
+  const SideProperties<N> properties(shading, elements, points, lit, options.seed);
   scene::parallel_for(n / 2, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) properties.find(sides, static_cast<std::uint32_t>(e));
   });

@@ -42,7 +42,10 @@ struct Sides {
   std::vector<Spectrum<N>> transmittance;  ///< ... per irradiance of the other side
   std::vector<std::uint8_t> coupled;       ///< by element: E_B is what reflectance applies to
   bool any_coupled = false;
-  std::vector<std::uint8_t> closed_opaque;  ///< by object: a hit on its back means "inside"
+  /// By object: the side that is inside a closed opaque body that no light is in, or kNoInner. A
+  /// path that first meets it started where light never gets to.
+  std::vector<std::uint8_t> inner;
+  static constexpr std::uint8_t kNoInner = 2;
 };
 
 /// Everything that the passes share and none of them changes.
