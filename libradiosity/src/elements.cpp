@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 #include "cutting.h"
+#include "division.h"
 #include "facets.h"
 #include "material/material.h"
 #include "scene/parallel.h"
@@ -68,8 +70,18 @@ CellSize solve_cell_size(const std::vector<double>& areas, double budget) {
   }
 }
 
+/// A facet that fell into regions: where its triangles' look-up trees and new facets are.
+struct Divided {
+  Division division;
+  std::vector<std::uint32_t> triangles;
+  std::uint32_t first_facet = 0;  ///< of the part's
+};
+
 struct ObjectPart {
   std::vector<Facet> facets;
+  Corners corners;                      ///< the object's triangles, then pieces of divided ones
+  std::vector<std::uint32_t> original;  ///< triangle of each of these
+  std::vector<Divided> divided;
   std::vector<CutFacet> cuts;
   double area = 0.0;
 };
@@ -92,8 +104,12 @@ class Builder {
     });
     limit_facets();
     choose_final_size();
+    const BarrierFinder barriers(scene_);
     scene::parallel_for(objects_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) cut(objects_[k]);
+      for (std::size_t k = begin; k < end; ++k) {
+        divide(barriers, objects_[k]);
+        cut(objects_[k]);
+      }
     });
     return assemble();
   }
@@ -147,10 +163,39 @@ class Builder {
     cap_ = size.cap;
   }
 
+  /// Regions of a facet that other surfaces part become facets of their own.
+  void divide(const BarrierFinder& barriers, std::size_t object) {
+    ObjectPart& part = parts_[object];
+    part.corners = object_corners(scene_, ObjectId(object));
+    part.original.resize(part.corners.size());
+    std::iota(part.original.begin(), part.original.end(), 0U);
+    const Corners whole = part.corners;
+    std::vector<Facet> facets;
+    for (Facet& f : part.facets) {
+      Division d = divide_facet(barriers, ObjectId(object), whole, f, cell_);
+      if (d.empty()) {
+        facets.push_back(std::move(f));
+        continue;
+      }
+      const auto shift = static_cast<std::uint32_t>(part.corners.size());
+      part.corners.insert(part.corners.end(), d.corners.begin(), d.corners.end());
+      part.original.insert(part.original.end(), d.original.begin(), d.original.end());
+      const auto first = static_cast<std::uint32_t>(facets.size());
+      for (Facet& region : d.facets) {
+        for (std::uint32_t& t : region.triangles) t += shift;
+        facets.push_back(std::move(region));
+      }
+      part.divided.push_back({std::move(d), std::move(f.triangles), first});
+    }
+    part.facets = std::move(facets);
+  }
+
   void cut(std::size_t object) {
-    const Corners corners = object_corners(scene_, ObjectId(object));
-    for (const Facet& f : parts_[object].facets)
-      parts_[object].cuts.push_back(cut_facet(corners, f, cell_, cap_));
+    ObjectPart& part = parts_[object];
+    for (const Facet& f : part.facets) {
+      part.cuts.push_back(cut_facet(part.corners, f, cell_, cap_));
+      for (ElementPiece& p : part.cuts.back().pieces) p.triangle = part.original[p.triangle];
+    }
   }
 
   Elements assemble() {
@@ -159,11 +204,30 @@ class Builder {
     field.triangle_facet.assign(scene_.triangle_count(), SurfaceField::kNone);
     e.first_piece.push_back(0);
     for (const std::size_t object : objects_) {
+      append_cuts(field, object);
       for (std::size_t k = 0; k < parts_[object].cuts.size(); ++k)
         append(e, object, parts_[object].facets[k], parts_[object].cuts[k]);
       parts_[object] = {};
     }
     return e;
+  }
+
+  /// Look-up trees of the divided triangles; the part's facets will follow those of the field.
+  void append_cuts(SurfaceField& field, std::size_t object) {
+    for (Divided& d : parts_[object].divided) {
+      const auto facet = static_cast<std::uint32_t>(field.facets.size()) + d.first_facet;
+      const auto cut = static_cast<std::uint32_t>(field.cuts.size());
+      const auto place = [&](std::uint32_t i) {
+        return i == SurfaceField::kNone ? i : i + (SurfaceField::is_cut(i) ? cut : facet);
+      };
+      for (SurfaceField::Cut& n : d.division.nodes) {
+        for (std::uint32_t& child : n.child) child = place(child);
+        field.cuts.push_back(n);
+      }
+      for (std::size_t k = 0; k < d.triangles.size(); ++k)
+        field.triangle_facet[scene_.objects[object].first_triangle + d.triangles[k]] =
+            place(d.division.root[k]);
+    }
   }
 
   void append(Elements& e, std::size_t object, const Facet& facet, CutFacet& cut) {
@@ -173,8 +237,10 @@ class Builder {
     cut.grid.first_cell = static_cast<std::uint32_t>(field.cell_element.size());
     field.facets.push_back(cut.grid);
     field.cell_element.resize(field.cell_element.size() + cut.cell_count(), SurfaceField::kNone);
+    const std::size_t triangles = scene_.mesh_of(ObjectId(object)).triangles.size();
     for (const std::uint32_t t : facet.triangles)
-      field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
+      if (t < triangles)  // pieces are found by their cuts
+        field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
     for (std::size_t k = 0; k < cut.element_cell.size(); ++k) {
       const std::uint32_t cell = cut.element_cell[k];
       field.cell_element[cut.grid.first_cell + cell] =

@@ -10,8 +10,26 @@ using scene::Side;
 using scene::SurfaceField;
 using scene::SurfacePoint;
 
+namespace {
+
+/// By which a polygon has to shrink for its points to keep clear of its edges.
+float shrink_of(const ElementPiece& piece) {
+  float perimeter = 0.0f;
+  float size = 0.0f;
+  for (std::size_t k = 0; k < piece.corners.size(); ++k) {
+    perimeter += (piece.corners[(k + 1) % piece.corners.size()] - piece.corners[k]).norm();
+    size = std::max(size, piece.corners[k].cwiseAbs().maxCoeff());
+  }
+  const float inradius = 2.0f * piece.area / perimeter;
+  return std::min(0.5f, 0x1p-21f * size / inradius);
+}
+
+}  // namespace
+
 ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements)
     : scene_(&scene), elements_(&elements), area_until_(elements.pieces.size()) {
+  shrink_.reserve(elements.pieces.size());
+  for (const ElementPiece& piece : elements.pieces) shrink_.push_back(shrink_of(piece));
   for (std::size_t e = 0; e + 1 < elements.first_piece.size(); ++e) {
     double sum = 0.0;
     for (std::size_t p = elements.first_piece[e]; p < elements.first_piece[e + 1]; ++p)
@@ -57,10 +75,15 @@ SurfacePoint ElementPoints::sample(std::uint32_t element, const Vec2f& u) const 
   const auto last = area_until_.begin() + elements_->first_piece[element + 1];
   const float x = u.x() * *(last - 1);
   const auto it = std::min(std::upper_bound(first, last, x), last - 1);
-  const ElementPiece& piece = elements_->pieces[static_cast<std::size_t>(it - area_until_.begin())];
+  const auto index = static_cast<std::size_t>(it - area_until_.begin());
+  const ElementPiece& piece = elements_->pieces[index];
   const float before = it == first ? 0.0f : *(it - 1);
   const float rest = *it > before ? std::clamp((x - before) / (*it - before), 0.0f, 1.0f) : 0.5f;
-  const Vec3f p = sample_polygon(piece.corners, {rest, u.y()});
+  Vec3f middle = Vec3f::Zero();
+  for (const Vec3f& corner : piece.corners) middle += corner;
+  middle /= static_cast<float>(piece.corners.size());
+  Vec3f p = sample_polygon(piece.corners, {rest, u.y()});
+  p += shrink_[index] * (middle - p);
   const Vec2f b = barycentric(scene_->corners(piece.object, piece.triangle), p);
   return scene::surface_point(*scene_, piece.object, piece.triangle, b.x(), b.y());
 }

@@ -20,7 +20,8 @@ inline constexpr SideIndex kNoSide = 0xffffffffU;
 }
 [[nodiscard]] inline scene::Side side_of(SideIndex i) { return static_cast<scene::Side>(i & 1U); }
 
-/// Draws points on an element, uniform by area.
+/// Draws points on an element, uniform by area but for a rim as wide as a few roundings of a
+/// coordinate: what stands on the rim (a wall) must not find a point on its other side.
 class ElementPoints {
  public:
   ElementPoints(const scene::Scene& scene, const Elements& elements);
@@ -31,6 +32,7 @@ class ElementPoints {
   const scene::Scene* scene_;
   const Elements* elements_;
   std::vector<float> area_until_;  ///< within the element, after each piece
+  std::vector<float> shrink_;      ///< of each piece about the mean of its corners
 };
 
 /// What the elements' sides do with light.

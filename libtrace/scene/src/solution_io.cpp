@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "solution files are little endian");
 
 constexpr char kMagic[8] = {'A', 'T', 'R', 'I', 'U', 'M', 'S', 'F'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 /// Appends values; vectors with their length.
 class Writer {
@@ -100,15 +100,31 @@ void facets(Reader& a, std::vector<SurfaceField::Facet>& v) {
   for (SurfaceField::Facet& f : v) facet(a, f);
 }
 
+template <class Archive, class Cut>
+void cut(Archive& a, Cut& c) {
+  for (int i = 0; i < 3; ++i) a(c.point[i]);
+  for (int i = 0; i < 3; ++i) a(c.normal[i]);
+  for (auto& child : c.child) a(child);
+}
+void cuts(Writer& a, const std::vector<SurfaceField::Cut>& v) {
+  a(static_cast<std::uint64_t>(v.size()));
+  for (const SurfaceField::Cut& c : v) cut(a, c);
+}
+void cuts(Reader& a, std::vector<SurfaceField::Cut>& v) {
+  v.resize(a.count(8 * sizeof(float)));
+  for (SurfaceField::Cut& c : v) cut(a, c);
+}
+
 /// One list of members for both directions. The binding stops compiling when a member is added.
 template <class Archive, class Field>
 void field(Archive& a, Field& f) {
-  auto& [lanes, list, cell_element, triangle_facet, element_facet, element_cell, element_area,
-         irradiance, body_irradiance, standard_error, valid, unit] = f;
+  auto& [lanes, list, cell_element, triangle_facet, cut_list, element_facet, element_cell,
+         element_area, irradiance, body_irradiance, standard_error, valid, unit] = f;
   a(lanes);
   facets(a, list);
   a(cell_element);
   a(triangle_facet);
+  cuts(a, cut_list);
   a(element_facet);
   a(element_cell);
   a(element_area);
@@ -127,6 +143,23 @@ bool all_below(const std::vector<std::uint32_t>& v, std::size_t limit) {
                      [&](std::uint32_t i) { return i < limit || i == SurfaceField::kNone; });
 }
 
+/// Triangles lead to facets, cuts to facets or to cuts behind themselves: every walk ends.
+bool cuts_consistent(const SurfaceField& f) {
+  const auto leads_on = [&](std::uint32_t i, std::size_t from) {
+    if (SurfaceField::is_cut(i)) {
+      const std::uint32_t cut = i & ~SurfaceField::kCut;
+      return cut >= from && cut < f.cuts.size();
+    }
+    return i == SurfaceField::kNone || i < f.facets.size();
+  };
+  for (const std::uint32_t i : f.triangle_facet)
+    if (!leads_on(i, 0)) return false;
+  for (std::size_t k = 0; k < f.cuts.size(); ++k)
+    for (const std::uint32_t child : f.cuts[k].child)
+      if (!leads_on(child, k + 1)) return false;
+  return true;
+}
+
 /// Look-ups index without checks, so every index is checked here.
 bool consistent(const SurfaceField& f) {
   const std::size_t n = f.element_count();
@@ -135,7 +168,7 @@ bool consistent(const SurfaceField& f) {
   };
   bool ok = (f.lanes == 1 || f.lanes == 3 || f.lanes == 4 || f.lanes == 8) &&
             f.element_cell.size() == n && f.element_area.size() == n &&
-            all_below(f.cell_element, n) && all_below(f.triangle_facet, f.facets.size()) &&
+            all_below(f.cell_element, n) && cuts_consistent(f) &&
             all_below(f.element_facet, f.facets.size());
   for (const SurfaceField::Facet& facet : f.facets) {
     const std::uint64_t cells = std::uint64_t{facet.nx} * facet.ny;

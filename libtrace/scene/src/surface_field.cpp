@@ -13,9 +13,7 @@ struct GridPlace {
 
 GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
                 std::uint32_t triangle, const Vec3f& position) {
-  const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
-  if (index >= field.triangle_facet.size()) return {};
-  const std::uint32_t f = field.triangle_facet[index];
+  const std::uint32_t f = field.facet_at(scene, object, triangle, position);
   if (f == SurfaceField::kNone) return {};
   const SurfaceField::Facet& facet = field.facets[f];
   const Vec3f d = position - facet.origin;
@@ -58,6 +56,18 @@ std::uint32_t nearest_element(const SurfaceField& field, const GridPlace& p) {
 
 }  // namespace
 
+std::uint32_t SurfaceField::facet_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
+                                     const Vec3f& position) const {
+  const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
+  if (index >= triangle_facet.size()) return kNone;
+  std::uint32_t at = triangle_facet[index];
+  while (is_cut(at)) {
+    const Cut& cut = cuts[at & ~kCut];
+    at = cut.child[(position - cut.point).dot(cut.normal) >= 0.0f ? 0 : 1];
+  }
+  return at;
+}
+
 std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                        const Vec3f& position) const {
   const GridPlace p = place(*this, scene, object, triangle, position);
@@ -66,8 +76,10 @@ std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std:
 
 float SurfaceField::cell_size(const Scene& scene, ObjectId object, std::uint32_t triangle) const {
   const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
-  if (index >= triangle_facet.size() || triangle_facet[index] == kNone) return 0.0f;
-  return 1.0f / facets[triangle_facet[index]].axis_u.norm();
+  if (index >= triangle_facet.size()) return 0.0f;
+  std::uint32_t at = triangle_facet[index];
+  while (is_cut(at)) at = cuts[at & ~kCut].child[0];
+  return at != kNone ? 1.0f / facets[at].axis_u.norm() : 0.0f;
 }
 
 SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,

@@ -37,7 +37,9 @@ Solution sample_solution() {
     f.facets[i].first_cell = 2 * i;
   }
   f.cell_element = {0, 1, 2, SurfaceField::kNone};
-  f.triangle_facet = {0, 1, SurfaceField::kNone};
+  f.triangle_facet = {0, SurfaceField::kCut | 0, SurfaceField::kNone};
+  f.cuts = {{{1, 2, 3}, {0, 1, 0}, {1, SurfaceField::kCut | 1}},
+            {{4, 5, 6}, {1, 0, 0}, {SurfaceField::kNone, 0}}};
   f.element_facet = {0, 0, 1};
   f.element_cell = {0, 1, 0};
   f.element_area = {1.0f, 0.5f, 0.25f};
@@ -105,6 +107,9 @@ TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
   };
   refused([](SurfaceField& f) { f.cell_element[0] = 3; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
+  refused([](SurfaceField& f) { f.triangle_facet[0] = SurfaceField::kCut | 2; });
+  refused([](SurfaceField& f) { f.cuts[1].child[0] = SurfaceField::kCut | 1; });  // round in circles
+  refused([](SurfaceField& f) { f.cuts[0].child[0] = 2; });
   refused([](SurfaceField& f) { f.facets[1].first_cell = 3; });
   refused([](SurfaceField& f) { f.irradiance.direct.pop_back(); });
   refused([](SurfaceField& f) { f.lanes = 5; });

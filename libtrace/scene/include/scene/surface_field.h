@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -29,6 +30,13 @@ struct SurfaceField {
     std::uint32_t nx = 0, ny = 0;
     std::uint32_t first_cell = 0;  ///< into cell_element
   };
+  /// A plane that divides a triangle between regions that other surfaces part (a wall on a floor).
+  /// Children: before the plane, behind it; facets, kNone, or kCut | index of a cut further on.
+  struct Cut {
+    Vec3f point, normal;
+    std::array<std::uint32_t, 2> child;
+  };
+  static constexpr std::uint32_t kCut = 0x80000000U;
   /// What is stored per element and side. Empty arrays: not computed because not needed.
   /// Irradiance [W/m^2 or lx-related lanes], index (element * 2 + side) * lanes + lane.
   struct Quantities {
@@ -40,7 +48,9 @@ struct SurfaceField {
   int lanes = 0;
   std::vector<Facet> facets;
   std::vector<std::uint32_t> cell_element;      ///< element of a cell or kNone
-  std::vector<std::uint32_t> triangle_facet;    ///< by Object::first_triangle + triangle, or kNone
+  /// By Object::first_triangle + triangle: facet, kNone, or kCut | index of the first cut.
+  std::vector<std::uint32_t> triangle_facet;
+  std::vector<Cut> cuts;
   std::vector<std::uint32_t> element_facet;
   std::vector<std::uint32_t> element_cell;      ///< iy * nx + ix within the facet
   std::vector<float> element_area;              ///< [m^2]
@@ -55,6 +65,10 @@ struct SurfaceField {
   [[nodiscard]] std::size_t element_count() const { return element_facet.size(); }
   [[nodiscard]] bool empty() const { return element_facet.empty(); }
 
+  [[nodiscard]] static bool is_cut(std::uint32_t i) { return (i & kCut) != 0 && i != kNone; }
+  /// Facet under a point of a triangle, or kNone.
+  [[nodiscard]] std::uint32_t facet_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
+                                       const Vec3f& position) const;
   /// Element under a point, or kNone (no facet, or a cell that nothing was found in).
   [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                          const Vec3f& position) const;
