@@ -14,6 +14,10 @@ namespace {
 using scene::SurfaceField;
 constexpr std::uint32_t kNone = SurfaceField::kNone;
 constexpr std::uint32_t kCut = SurfaceField::kCut;
+// In cells: facets below the first are not divided, regions below the second get no element. Where
+// models are full of things that touch and overlap, slivers would outnumber all other elements.
+constexpr double kSmallestFacet = 1e-2;
+constexpr double kSmallestRegion = 1e-3;
 constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
 
 /// A corner, and which line the edge to the next one lies on.
@@ -261,17 +265,21 @@ class Divider {
     if (facet_of_root.size() < 2) return {};
     out.facets.resize(facet_of_root.size());
     for (std::uint32_t f = 0; f < fragments_.size(); ++f) add(out, fragments_[f], facet_of[f]);
+    const auto is_sliver = [&](const Facet& f) {
+      return f.triangles.empty() || f.area < kSmallestRegion * cell_ * cell_;
+    };
     std::vector<std::uint32_t> kept(out.facets.size(), kNone);
     std::uint32_t count = 0;
     for (std::size_t k = 0; k < kept.size(); ++k) {
       Facet& f = out.facets[k];
-      if (f.triangles.empty()) continue;
+      if (is_sliver(f)) continue;
       f.normal = facet_.normal;
       f.axis = facet_.axis;
       f.centre /= f.area;
       kept[k] = count++;
     }
-    std::erase_if(out.facets, [](const Facet& f) { return f.triangles.empty(); });
+    if (count == 0) return {};
+    std::erase_if(out.facets, [&](const Facet& f) { return is_sliver(f); });
     out.nodes = nodes_;
     const auto leaf = [&](std::uint32_t& node) {
       if ((node & kCut) == 0) node = kept[facet_of[node]];
@@ -316,7 +324,7 @@ class Divider {
 
 Division divide_facet(const BarrierFinder& barriers, scene::ObjectId object, const Corners& corners,
                       const Facet& facet, double cell) {
-  if (facet.clump) return {};
+  if (facet.clump || facet.area < kSmallestFacet * cell * cell) return {};
   return Divider(barriers, object, corners, facet, cell).divide();
 }
 

@@ -10,7 +10,8 @@
 namespace atrium::radiosity {
 
 /// What became of a facet that barriers divide into regions not connected within it: light on one
-/// side of a wall says nothing about the other, so each region is a facet of its own.
+/// side of a wall says nothing about the other, so each region is a facet of its own. Slivers are
+/// left out: no look-up finds an element there.
 struct Division {
   std::vector<Facet> facets;            ///< their triangles count in `corners`
   Corners corners;                      ///< of the pieces of the facet's triangles
@@ -19,7 +20,7 @@ struct Division {
   /// indices into `nodes` and `facets`.
   std::vector<scene::SurfaceField::Cut> nodes;
   std::vector<std::uint32_t> root;  ///< by position in the facet's triangles
-  [[nodiscard]] bool empty() const { return facets.size() < 2; }
+  [[nodiscard]] bool empty() const { return facets.empty(); }
 };
 
 /// \param cell  [m] of the facet: gaps between barriers below 2 % of it connect nothing, and what
