@@ -18,6 +18,8 @@ constexpr std::uint32_t kCut = SurfaceField::kCut;
 // models are full of things that touch and overlap, slivers would outnumber all other elements.
 constexpr double kSmallestFacet = 1e-2;
 constexpr double kSmallestRegion = 1e-3;
+constexpr double kGap = 0.02;        // cells; narrower gaps between barriers connect nothing
+constexpr double kWallLength = 2.0;  // cells; longer barriers part what is beside their ends, too
 constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
 
 /// A corner, and which line the edge to the next one lies on.
@@ -209,7 +211,7 @@ class Divider {
 
   void connect_across(std::uint32_t line, const std::vector<Use>& uses) {
     if (uses.size() < 2) return;
-    const std::vector<std::pair<double, double>> closed = covered(lines_[line]);
+    const std::vector<Interval> closed = covered(lines_[line]);
     for (std::size_t i = 0; i < uses.size(); ++i)
       for (std::size_t j = i + 1; j < uses.size(); ++j) {
         const double low = std::max(uses[i].low, uses[j].low);
@@ -219,32 +221,43 @@ class Divider {
       }
   }
 
-  /// Where barriers lie on a line, ascending.
-  std::vector<std::pair<double, double>> covered(const Line& line) const {
-    std::vector<std::pair<double, double>> out;
+  using Interval = std::pair<double, double>;
+
+  /// Where barriers lie on a line, ascending; what all but touches is one.
+  std::vector<Interval> covered(const Line& line) const {
+    std::vector<Interval> all;
     const auto off = [&](const Vec3d& p) {
       return (p - line.point - along(line, p) * line.direction).norm();
     };
     for (const Barrier& b : barriers_) {
       if (off(b.a) > 4.0 * tolerance_ || off(b.b) > 4.0 * tolerance_) continue;
-      out.push_back(std::minmax(along(line, b.a), along(line, b.b)));
+      all.push_back(std::minmax(along(line, b.a), along(line, b.b)));
     }
-    std::sort(out.begin(), out.end());
+    std::sort(all.begin(), all.end());
+    std::vector<Interval> out;
+    for (const Interval& i : all) {
+      if (!out.empty() && i.first - out.back().second < kGap * cell_)
+        out.back().second = std::max(out.back().second, i.second);
+      else
+        out.push_back(i);
+    }
     return out;
   }
 
-  /// Is there a gap that counts? A border without any barrier is open however short it is.
-  bool is_open(double low, double high,
-               const std::vector<std::pair<double, double>>& closed) const {
+  /// Does a border between fragments connect them? Next to a wall's own line it does not, doorway
+  /// or not: elements on both sides of the wall would be one. A short barrier (a table's leg) has
+  /// to cover the border; one without any barrier is open however short it is.
+  bool is_open(double low, double high, const std::vector<Interval>& closed) const {
     double at = low;
     double widest = 0.0;
     for (const auto& [from, to] : closed) {
-      if (from >= high) break;
-      widest = std::max(widest, from - at);
-      at = std::max(at, to);
+      const double length = to - from;
+      if (length > kWallLength * cell_ && from - high < length && low - to < length) return false;
+      if (from < high) widest = std::max(widest, std::min(from, high) - at);
+      if (from < high) at = std::max(at, to);
     }
     widest = std::max(widest, high - at);
-    return widest > std::min(0.02 * cell_, 0.5 * (high - low));
+    return widest > std::min(kGap * cell_, 0.5 * (high - low));
   }
 
   std::uint32_t root_of(std::uint32_t i) {

@@ -9,8 +9,9 @@
 
 namespace atrium::radiosity {
 
-/// What became of a facet that barriers divide into regions not connected within it: light on one
-/// side of a wall says nothing about the other, so each region is a facet of its own. Slivers are
+/// What became of a facet that barriers divide into regions: light on one side of a wall says
+/// nothing about the other, so each region is a facet of its own. Regions end at the lines of walls
+/// even where a doorway connects them, so that no element lies on both sides of a wall. Slivers are
 /// left out: no look-up finds an element there.
 struct Division {
   std::vector<Facet> facets;            ///< their triangles count in `corners`

@@ -164,6 +164,57 @@ TEST_P(Leaks, InterpolationStopsAtTheWall) {
   EXPECT_NEAR(sum, expected, 0.01 * expected);
 }
 
+// A door that leaves a slit of 5 cm. The shell runs through both rooms, or is cut at the wall.
+scene::Scene door_ajar(bool through) {
+  SceneMaker maker;
+  const auto white = maker.material(test::diffuse(test::kReflectance));
+  const float end = kWall + 0.1f;
+  if (through) {
+    maker.room(kShell.low, kShell.high, white);
+  } else {
+    const float x[] = {kShell.low.x(), kWall, end, kShell.high.x()};
+    for (int i = 0; i < 3; ++i) {
+      const float a = x[i], b = x[i + 1];
+      maker.quad(white, {a, 0, 0}, {a, 0, 2.5f}, {b, 0, 2.5f}, {b, 0, 0});
+      maker.quad(white, {a, 3, 0}, {b, 3, 0}, {b, 3, 2.5f}, {a, 3, 2.5f});
+      maker.quad(white, {a, 0, 0}, {b, 0, 0}, {b, 3, 0}, {a, 3, 0});
+      maker.quad(white, {a, 0, 2.5f}, {a, 3, 2.5f}, {b, 3, 2.5f}, {b, 0, 2.5f});
+    }
+    maker.quad(white, {-2, 0, 0}, {-2, 3, 0}, {-2, 3, 2.5f}, {-2, 0, 2.5f});
+    maker.quad(white, {2.1f, 0, 0}, {2.1f, 0, 2.5f}, {2.1f, 3, 2.5f}, {2.1f, 3, 0});
+  }
+  add_box(maker, white, {{kWall, 0, 0}, {end, 1.05f, 2.5f}});
+  add_box(maker, white, {{kWall, 1.1f, 0}, {end, 3, 2.5f}});
+  maker.point_light({-1.1, 1.4, 1.7}, test::kIntensity);
+  return maker.take();
+}
+
+TEST(DoorAjar, WhatItLetsThroughIsThatOfCutFloors) {
+  const SolveOptions options{.element_size = 0.2, .gather_rays = 256, .direct_samples = 64};
+  const Solved through(door_ajar(true), options), cut(door_ajar(false), options);
+  const auto beyond = [](const Solved& s) {
+    double sum = 0.0, variance = 0.0;
+    for (std::size_t e = 0; e < s.count(); ++e)
+      for (const int side : {0, 1}) {
+        const Vec3f p = beside(s, e, side);
+        if (!(p.x() > kWall + 0.1f) || !kShell.contains(p)) continue;
+        sum += s.area(e) * s.total(e, side);
+        variance += std::pow(s.area(e) * s.error(e, side), 2);
+      }
+    // Fluctuations return with 1 / (1 - rho).
+    return std::pair(sum, std::sqrt(variance) / (1.0 - test::kReflectance));
+  };
+  const auto [a, error_a] = beyond(through);
+  const auto [b, error_b] = beyond(cut);
+  EXPECT_GT(a, 0.1);
+  EXPECT_LT(error_a, 0.05 * a);
+  EXPECT_NEAR(a, b, 3 * std::hypot(error_a, error_b));
+  for (const Solved* s : {&through, &cut}) {
+    const FluxBalance& f = s->result.flux;
+    EXPECT_NEAR(f.absorbed + f.escaped, f.emitted, 3 * f.standard_error);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Leaks, testing::Range<std::size_t>(0, cases().size()));
 
 }  // namespace
