@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "covers.h"
 #include "lit_spaces.h"
 
 namespace atrium::radiosity {
@@ -160,6 +161,42 @@ class SideProperties {
   std::uint64_t seed_;
 };
 
+/// Where most of an element lies under another object's, that one's element takes its place.
+template <int N>
+void find_covers(const scene::Scene& scene, const Elements& elements, const ElementPoints& points,
+                 std::uint64_t seed, Sides<N>& sides) {
+  constexpr std::uint32_t kPoints = 4;
+  const Covers covers(scene);
+  sides.cover.assign(sides.is_active.size(), kNoSide);
+  scene::parallel_for(sides.is_active.size() / 2, 256, [&](std::size_t begin, std::size_t end) {
+    for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+      if (sides.is_active[2 * e] == 0 && sides.is_active[2 * e + 1] == 0) continue;
+      std::uint32_t count = 0;
+      for (std::uint32_t k = 0; k < kPoints && k < count + 2; ++k) {
+        scene::Sampler sampler(seed ^ 0xc0feU, e, k);
+        const SurfacePoint p = points.sample(e, sampler.next_2d());
+        const auto cover = covers.of(p);
+        if (!cover) continue;
+        const std::uint32_t other =
+            elements.layout.element_at(scene, cover->object, cover->triangle, p.position);
+        if (other == SurfaceField::kNone) continue;
+        ++count;
+        sides.cover[2 * e] = 2 * other + (cover->turned ? 1 : 0);
+        sides.cover[2 * e + 1] = sides.cover[2 * e] ^ 1U;
+      }
+      if (count + 1 < kPoints) sides.cover[2 * e] = sides.cover[2 * e + 1] = kNoSide;
+    }
+  });
+  // Covers have lower objects and so lower elements: they are settled first.
+  for (SideIndex i = 0; i < sides.cover.size(); ++i) {
+    SideIndex& cover = sides.cover[i];
+    if (cover != kNoSide && sides.cover[cover] != kNoSide) cover = sides.cover[cover];
+    if (cover != kNoSide && (sides.is_active[i] == 0 || sides.is_active[cover] == 0))
+      cover = kNoSide;
+    if (cover != kNoSide) sides.is_active[i] = 0;
+  }
+}
+
 bool specular_scene(const scene::Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const scene::Object& o) {
     const material::MaterialTraits t = material::traits(scene.materials[o.material.value]);
@@ -188,6 +225,7 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
   scene::parallel_for(n / 2, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) properties.find(sides, static_cast<std::uint32_t>(e));
   });
+  find_covers(shading.scene(), elements, points, options.seed, sides);
   for (SideIndex i = 0; i < n; ++i)
     if (sides.is_active[i] != 0) sides.active.push_back(i);
   sides.any_coupled = std::any_of(sides.coupled.begin(), sides.coupled.end(),
@@ -200,7 +238,7 @@ SideIndex Problem<N>::side_at(const SurfacePoint& point, Side side) const {
       elements.layout.element_at(shading.scene(), point.object, point.triangle, point.position);
   if (element == SurfaceField::kNone) return kNoSide;
   const SideIndex i = side_index(element, side);
-  return sides.is_active[i] != 0 ? i : kNoSide;
+  return sides.is_active[i] != 0 ? i : sides.cover[i];
 }
 
 template struct Problem<1>;

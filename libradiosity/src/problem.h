@@ -48,6 +48,10 @@ struct Sides {
   /// path that first meets it started where light never gets to.
   std::vector<std::uint8_t> inner;
   static constexpr std::uint8_t kNoInner = 2;
+  /// By side, of those that lie under another object's surface in their own plane: the side that
+  /// counts their light (Covers), else kNoSide. They are not active and have that side's
+  /// irradiance.
+  std::vector<SideIndex> cover;
 };
 
 /// Everything that the passes share and none of them changes.

@@ -51,6 +51,26 @@ void complete_body(Estimate<N>& e, const Problem<N>& problem) {
 }
 
 template <int N>
+void copy_to_covered(Estimate<N>& e, const std::vector<SideIndex>& cover) {
+  for (std::size_t i = 0; i < cover.size(); ++i) {
+    if (cover[i] == kNoSide) continue;
+    e.irradiance.plain[i] = e.irradiance.plain[cover[i]];
+    if (!e.irradiance.body.empty()) e.irradiance.body[i] = e.irradiance.body[cover[i]];
+    e.variance[i] = e.variance[cover[i]];
+  }
+}
+
+/// Pictures meet covered surfaces as well as their covers.
+template <int N>
+void copy_to_covered(Solution<N>& s, const std::vector<SideIndex>& cover) {
+  copy_to_covered(s.direct, cover);
+  copy_to_covered(s.caustic, cover);
+  copy_to_covered(s.indirect, cover);
+  for (std::size_t i = 0; i < cover.size(); ++i)
+    if (cover[i] != kNoSide) s.valid[i] = s.valid[cover[i]];
+}
+
+template <int N>
 Solution<N> run_solver(const Problem<N>& problem, Work& work, scene::Counters& counters) {
   switch (problem.options.solver) {
     case Solver::Matrix:
@@ -69,6 +89,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   const scene::Shading<N> shading(query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
   const Problem<N> problem(shading, result.elements, options);
   Solution<N> solution = run_solver(problem, work, result.counters);
+  copy_to_covered(solution, problem.sides.cover);
   complete_body(solution.direct, problem);
   complete_body(solution.caustic, problem);
   complete_body(solution.indirect, problem);
