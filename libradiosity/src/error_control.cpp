@@ -17,12 +17,14 @@ Neighbours::Neighbours(const SurfaceField& layout) {
 
 namespace {
 
-/// Mean over a side and its neighbours.
+/// Mean over a side and its active neighbours.
 template <int N, class Value>
-double local_mean(const Neighbours& neighbours, SideIndex i, Value&& value) {
+double local_mean(const Problem<N>& problem, const Neighbours& neighbours, SideIndex i,
+                  Value&& value) {
   double sum = value(i);
   double count = 1.0;
   neighbours.visit(i, [&](SideIndex j) {
+    if (problem.sides.is_active[j] == 0) return;
     sum += value(j);
     count += 1.0;
   });
@@ -93,7 +95,7 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
   double all = 0.0;
   double all_scale = 0.0;
   for (const SideIndex i : active) {
-    const double mean = local_mean<N>(neighbours, i, [&](SideIndex j) { return value[j]; });
+    const double mean = local_mean(problem, neighbours, i, [&](SideIndex j) { return value[j]; });
     scale[i] = mean * mean;
     if (tally.valid(i) == 0) scale[i] = 0.0;
     own[i] = (group ? tally.variance(i, *group) : tally.variance(i)) * tally.valid(i);

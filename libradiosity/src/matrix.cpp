@@ -6,6 +6,7 @@
 #include "material/error.h"
 #include "occluders.h"
 #include "patches.h"
+#include "segment.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -165,11 +166,9 @@ class MatrixSolver {
       const float kernel =
           (a.back ? -1.0f : 1.0f) * p.ng.dot(d) * (b.back ? 1.0f : -1.0f) * q.ng.dot(d) / (r2 * r2);
       if (!(kernel > 0.0f) || p.ng.dot(d) * (a.back ? -1.0f : 1.0f) <= 0.0f) continue;
-      const float distance = std::sqrt(r2);
-      const Vec3f w = d / distance;
-      const scene::Ray ray{scene::offset_origin(p, w), w, 0.0f, distance * (1.0f - 1e-4f)};
       all += static_cast<double>(kernel);
-      const Spectrum<N> t = problem_.shading.transmittance(ray, counters, Counter::RaysRow);
+      const Spectrum<N> t =
+          problem_.shading.transmittance(segment(p, q), counters, Counter::RaysRow);
       if (!t.is_zero()) seen += static_cast<double>(kernel * t.mean());
     }
     return all > 0.0 ? seen / all : 0.0;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "covers.h"
+#include "lit_spaces.h"
 #include "radiosity/elements.h"
 #include "radiosity/solve.h"
 #include "scene/light_groups.h"
@@ -26,8 +28,9 @@ inline constexpr SideIndex kNoSide = 0xffffffffU;
   return std::min(samples, std::max(8, samples >> std::min(level, 8)));
 }
 
-/// Draws points on an element, uniform by area. Holds the elements' pieces as triangles, so that a
-/// point costs one search and no look at the scene.
+/// Draws points on an element, uniform by area but for a rim as wide as a few roundings of a
+/// coordinate: what stands on the rim (a wall) must not find a point on its other side. Holds the
+/// elements' pieces as triangles, so that a point costs one search and no look at the scene.
 class ElementPoints {
  public:
   ElementPoints(const scene::Scene& scene, const Elements& elements);
@@ -69,10 +72,24 @@ struct Sides {
   std::vector<Spectrum<N>> transmittance;  ///< ... per irradiance of the other side
   std::vector<std::uint8_t> coupled;       ///< by element: E_B is what reflectance applies to
   bool any_coupled = false;
-  std::vector<std::uint8_t> closed_opaque;  ///< by object: a hit on its back means "inside"
+  /// By object: the side that is inside a closed opaque body that no light is in, or kNoInner. A
+  /// path that first meets it started where light never gets to.
+  std::vector<std::uint8_t> inner;
+  static constexpr std::uint8_t kNoInner = 2;
+  /// By side, of those that lie under another object's surface in their own plane: the side that
+  /// counts their light (Covers), else kNoSide. They are not active and have that side's
+  /// irradiance.
+  std::vector<SideIndex> cover;
   /// By object: scatters diffusely and does nothing else, the same everywhere. Then a hit's side is
   /// all that light transport needs to know.
   std::vector<std::uint8_t> plain;
+};
+
+/// What a scene's geometry says about where light gets to, whatever the elements are.
+struct Surroundings {
+  explicit Surroundings(const scene::Scene& scene) : lit(scene), covers(scene) {}
+  LitSpaces lit;
+  Covers covers;
 };
 
 /// May a side of an object's surface take part? Diffuse light at the inner faces of solids and at
@@ -80,9 +97,9 @@ struct Sides {
 template <int N>
 [[nodiscard]] bool is_outside(const scene::Shading<N>& shading, const Sides<N>& sides,
                               scene::ObjectId object, scene::Side side) {
-  if (side == scene::Side::Front) return true;
+  if (sides.inner[object.value] == static_cast<std::uint8_t>(side)) return false;
   const scene::MaterialId material = shading.scene().objects[object.value].material;
-  return sides.closed_opaque[object.value] == 0 && !shading.material(material).source->one_sided;
+  return side == scene::Side::Front || !shading.material(material).source->one_sided;
 }
 
 /// Everything that the passes share and none of them changes.
@@ -90,6 +107,9 @@ template <int N>
 struct Problem {
   Problem(const scene::Shading<N>& shading_in, const Elements& elements_in,
           const SolveOptions& options_in);
+  /// For several meshes of one scene. \param surroundings  of that scene.
+  Problem(const scene::Shading<N>& shading_in, const Surroundings& surroundings,
+          const Elements& elements_in, const SolveOptions& options_in);
 
   const scene::Shading<N>& shading;
   const Elements& elements;
@@ -111,6 +131,9 @@ struct Problem {
                                   const Vec3f& position, scene::Side side) const;
 
  private:
+  /// The active side that counts the light of one that is not, at a place; or kNoSide.
+  [[nodiscard]] SideIndex cover_at(SideIndex i, const Vec3f& position) const;
+
   std::vector<std::uint32_t> streams_;
 };
 

@@ -1,4 +1,5 @@
 #include "patches.h"
+#include "segment.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -115,10 +116,9 @@ class ShootingSolver {
       const double kernel =
           static_cast<double>(here * there) / std::pow(static_cast<double>(distance), 4);
       all += kernel;
-      const Vec3f w = d / distance;
-      const scene::Ray ray{scene::offset_origin(p, w), w, 0.0f, distance * (1.0f - 1e-4f)};
-      free += kernel * static_cast<double>(
-                           problem_.shading.transmittance(ray, counters, Counter::RaysRow).mean());
+      const Spectrum<N> seen =
+          problem_.shading.transmittance(segment(p, q), counters, Counter::RaysRow);
+      free += kernel * static_cast<double>(seen.mean());
     }
     if (!(free > 0.0)) return 0.0;
     const Patch receiver = element_patch(problem_.elements, j);

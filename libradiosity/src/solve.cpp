@@ -28,12 +28,41 @@ bool all_zero(const SideValues<N>& values) {
                      [](const Spectrum<N>& v) { return v.is_zero(); });
 }
 
-/// E_B of elements that are not coupled is E: one array serves every look-up.
+/// Where a side's values are: at its cover, if it has one. Pictures meet covered surfaces as well.
 template <int N>
-void complete_body(Irradiance<N>& e, const Problem<N>& problem) {
-  if (e.body.empty()) return;
-  for (std::size_t i = 0; i < problem.side_count(); ++i)
-    if (problem.sides.coupled[i / 2] == 0) e.body[i] = e.plain[i];
+SideIndex source_of(const Problem<N>& problem, SideIndex i) {
+  return problem.sides.cover[i] != kNoSide ? problem.sides.cover[i] : i;
+}
+
+template <int N, class T>
+void copy_to_covered(std::vector<T>& values, const Problem<N>& problem) {
+  for (SideIndex i = 0; i < values.size(); ++i) values[i] = values[source_of(problem, i)];
+}
+
+/// Light of covered sides; and E_B of elements that are not coupled is E: one array serves every
+/// look-up.
+template <int N>
+void complete(Irradiance<N>& e, const Problem<N>& problem) {
+  copy_to_covered(e.plain, problem);
+  for (SideIndex i = 0; i < e.body.size(); ++i) {
+    const SideIndex from = source_of(problem, i);
+    const bool coupled = problem.sides.coupled[i / 2] != 0 && problem.sides.coupled[from / 2] != 0;
+    e.body[i] = coupled ? e.body[from] : e.plain[i];
+  }
+}
+
+template <int N>
+void complete(Solution<N>& s, const Problem<N>& problem) {
+  for (Estimate<N>* e : {&s.direct, &s.caustic, &s.indirect}) {
+    complete(e->irradiance, problem);
+    copy_to_covered(e->variance, problem);
+  }
+  for (GroupEstimate<N>& g : s.groups) {
+    for (Irradiance<N>* e : {&g.direct, &g.caustic, &g.indirect}) complete(*e, problem);
+    copy_to_covered(g.light_variance, problem);
+    copy_to_covered(g.indirect_variance, problem);
+  }
+  copy_to_covered(s.valid, problem);
 }
 
 /// Caustics stay empty if there are none: who reads the field skips them.
@@ -60,9 +89,6 @@ std::vector<scene::GroupField> group_fields(Solution<N>& s, const Problem<N>& pr
   std::vector<scene::GroupField> fields(s.groups.size());
   for (std::size_t g = 0; g < fields.size(); ++g) {
     GroupEstimate<N>& e = s.groups[g];
-    complete_body(e.direct, problem);
-    complete_body(e.caustic, problem);
-    complete_body(e.indirect, problem);
     fields[g].name = problem.groups.names[g];
     store(e.direct, e.caustic, e.indirect, fields[g].irradiance, fields[g].body_irradiance);
     fields[g].light_error = roots(e.light_variance);
@@ -86,25 +112,26 @@ void store(const Solution<N>& s, const Problem<N>& problem, SurfaceField& field)
 
 /// The mesh that the solver works on. Only rows gain by elements of several sizes.
 template <int N>
-AdaptedMesh<N> make_mesh(const scene::Shading<N>& shading, const SolveOptions& options,
-                         const Previous* previous, Work& work, scene::Counters& counters) {
+AdaptedMesh make_mesh(const scene::Shading<N>& shading, const Surroundings& surroundings,
+                      const SolveOptions& options, const Previous* previous, Work& work,
+                      scene::Counters& counters) {
   const bool adapt = options.solver == Solver::Rows && options.max_level > 0;
   // Room for what is divided; a mesh of an asked size is asked for as it is.
-  const auto start = adapt ? static_cast<std::uint32_t>(0.6 * options.max_elements) + 1
-                           : options.max_elements;
+  const auto start =
+      adapt ? static_cast<std::uint32_t>(0.6 * options.max_elements) + 1 : options.max_elements;
   work.begin("elements", 0.02);
   Elements elements = make_elements(shading.scene(), {.element_size = options.element_size,
                                                       .max_elements = start,
                                                       .max_level = options.max_level});
   if (previous != nullptr)
-    return {elements_of(shading.scene(), std::move(elements), previous->field), {}, 0.0};
-  if (!adapt) return {std::move(elements), {}, 0.0};
+    return {elements_of(shading.scene(), std::move(elements), previous->field), 0.0};
+  if (!adapt) return {std::move(elements), 0.0};
   work.begin("mesh", 0.1);
-  return adapt_mesh(shading, std::move(elements), options, work, counters);
+  return adapt_mesh(shading, surroundings, std::move(elements), options, work, counters);
 }
 
 template <int N>
-Solution<N> run_solver(const Problem<N>& problem, Start<N> start, Work& work,
+Solution<N> run_solver(const Problem<N>& problem, Start start, Work& work,
                        scene::Counters& counters) {
   if (problem.group_count() > 1 && problem.options.solver != Solver::Rows)
     throw Error("radiosity: light groups need the solver 'rows'");
@@ -116,7 +143,7 @@ Solution<N> run_solver(const Problem<N>& problem, Start<N> start, Work& work,
     case Solver::Rows:
       break;
   }
-  return solve_with_rows(problem, std::move(start), work, counters);
+  return solve_with_rows(problem, start, work, counters);
 }
 
 template <int N>
@@ -126,7 +153,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   SolveOptions options = asked;
   StateHead head = head_of(query.scene(), basis, options);
   std::optional<scene::ArchiveReader> reader;
-  Start<N> start;
+  Start start;
   if (previous != nullptr) {
     const std::vector<char>& state = previous->state;
     reader.emplace(state.data(), state.data() + state.size(), "radiosity: the state to go on from");
@@ -139,16 +166,16 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   }
   const scene::Shading<N> shading(
       query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
-  AdaptedMesh<N> mesh = make_mesh(shading, options, previous, work, result.counters);
+  const Surroundings surroundings(shading.scene());
+  AdaptedMesh mesh = make_mesh(shading, surroundings, options, previous, work, result.counters);
   result.elements = std::move(mesh.elements);
   if (previous == nullptr) head.mesh_error = mesh.error;
   result.mesh_error = head.mesh_error;
   // Elements that were being divided are no state: another solve would end with others.
   if (work.stopped() || options.solver != Solver::Rows) options.keep = Keep::Nothing;
-  start.direct = std::move(mesh.direct);
   result.counters[Counter::Elements] += result.elements.layout.element_count();
-  const Problem<N> problem(shading, result.elements, options);
-  Solution<N> solution = run_solver(problem, std::move(start), work, result.counters);
+  const Problem<N> problem(shading, surroundings, result.elements, options);
+  Solution<N> solution = run_solver(problem, start, work, result.counters);
   if (!solution.state.empty()) {
     scene::ArchiveWriter writer;
     head.archive(writer);
@@ -158,9 +185,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   } else if (previous != nullptr && start.same_light && options.keep != Keep::Nothing) {
     result.state = previous->state;  // stopped before it had caught up
   }
-  complete_body(solution.direct.irradiance, problem);
-  complete_body(solution.caustic.irradiance, problem);
-  complete_body(solution.indirect.irradiance, problem);
+  complete(solution, problem);
   result.field = result.elements.layout;
   store(solution, problem, result.field);
   result.groups = group_fields(solution, problem);
@@ -169,9 +194,9 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   result.iterations = solution.iteration.iterations;
   result.error_estimate = solution.error_estimate;
   if (options.probes > 0)
-    result.certificate =
-        make_certificate(problem, result.field, std::hypot(result.error_estimate, result.mesh_error),
-                         work, result.counters);
+    result.certificate = make_certificate(problem, result.field,
+                                          std::hypot(result.error_estimate, result.mesh_error),
+                                          work, result.counters);
   result.complete = work.stopped_by().empty();
   result.stopped_by = !result.complete                ? work.stopped_by()
                       : !solution.iteration.converged ? "iterations"
@@ -193,8 +218,9 @@ SolveResult solve_from(const scene::RayQuery& query, const material::SpectralBas
     throw Error("radiosity: only the solver 'rows' can go on from a solution");
   Work work(control, options.time_limit);
   SolveResult result;
-  with_lanes(basis.lanes(),
-             [&](auto lanes) { solve_lanes<lanes()>(query, basis, options, previous, work, result); });
+  with_lanes(basis.lanes(), [&](auto lanes) {
+    solve_lanes<lanes()>(query, basis, options, previous, work, result);
+  });
   result.field.unit = query.scene().unit == scene::RadianceUnit::Nit ? "lx" : "W/m^2";
   control.report("radiosity", 1.0, result.stopped_by);
   return result;

@@ -50,16 +50,14 @@ enum class Stage : std::uint8_t { Light, Rows, FirstGather, Gather, RoundLight, 
 template <int N>
 class RowSolver {
  public:
-  RowSolver(const Problem<N>& problem, Tally<N> direct, Work& work, Counters& counters)
+  RowSolver(const Problem<N>& problem, Work& work, Counters& counters)
       : problem_(problem),
         work_(work),
         counters_(counters),
         result_(problem),
         neighbours_(problem.elements.layout),
         groups_(problem.group_count()),
-        direct_(direct.groups() > 0 ? std::move(direct)
-                                    : Tally<N>(problem.side_count(), problem.group_count(),
-                                               problem.sides.any_coupled)),
+        direct_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         exposed_(problem.side_count(), 1.0f),
@@ -856,15 +854,15 @@ class RowSolver {
 }  // namespace
 
 template <int N>
-Solution<N> solve_with_rows(const Problem<N>& problem, Start<N> start, Work& work,
+Solution<N> solve_with_rows(const Problem<N>& problem, Start start, Work& work,
                             Counters& counters) {
-  RowSolver<N> solver(problem, std::move(start.direct), work, counters);
+  RowSolver<N> solver(problem, work, counters);
   if (start.state != nullptr) solver.restore(*start.state, start.same_light);
   return solver.solve();
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Solution<N> solve_with_rows(const Problem<N>&, Start<N>, Work&, Counters&);
+  template Solution<N> solve_with_rows(const Problem<N>&, Start, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

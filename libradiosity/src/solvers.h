@@ -34,16 +34,14 @@ struct Solution {
 };
 
 /// What is known before.
-template <int N>
 struct Start {
-  Tally<N> direct;  ///< light samples of the problem's sides, or empty
   scene::ArchiveReader* state = nullptr;  ///< Solution::state of the same elements
   bool same_light = true;                 ///< false: reflectances have changed since
 };
 
 /// \throws Error  if the state is damaged.
 template <int N>
-[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Start<N> start, Work& work,
+[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Start start, Work& work,
                                           scene::Counters& counters);
 /// \throws Error  if the scene has specular surfaces or more sides than a dense matrix can hold.
 template <int N>

@@ -81,8 +81,8 @@ Elements elements_of(const scene::Scene& scene, Elements elements, const Surface
     elements = refine(scene, elements, split).elements;
   }
   const SurfaceField& now = elements.layout;
-  if (now.nodes != field.nodes || now.element_area != field.element_area ||
-      now.triangle_facet != field.triangle_facet)
+  if (now.nodes != field.nodes || now.cuts.size() != field.cuts.size() ||
+      now.element_area != field.element_area || now.triangle_facet != field.triangle_facet)
     throw differs();
   return elements;
 }

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kMagic[8] = {'A', 'T', 'R', 'I', 'U', 'M', 'S', 'F'};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 template <class Archive, class Facet>
 void facet(Archive& a, Facet& f) {
@@ -34,6 +34,21 @@ void facets(ArchiveWriter& a, const std::vector<SurfaceField::Facet>& v) {
 void facets(ArchiveReader& a, std::vector<SurfaceField::Facet>& v) {
   v.resize(a.count(12 * sizeof(float) + 1));
   for (SurfaceField::Facet& f : v) facet(a, f);
+}
+
+template <class Archive, class Cut>
+void cut(Archive& a, Cut& c) {
+  for (int i = 0; i < 3; ++i) a(c.point[i]);
+  for (int i = 0; i < 3; ++i) a(c.normal[i]);
+  for (auto& child : c.child) a(child);
+}
+void cuts(ArchiveWriter& a, const std::vector<SurfaceField::Cut>& v) {
+  a(static_cast<std::uint64_t>(v.size()));
+  for (const SurfaceField::Cut& c : v) cut(a, c);
+}
+void cuts(ArchiveReader& a, std::vector<SurfaceField::Cut>& v) {
+  v.resize(a.count(8 * sizeof(float)));
+  for (SurfaceField::Cut& c : v) cut(a, c);
 }
 
 template <class Archive, class Quantities>
@@ -65,12 +80,13 @@ void groups(ArchiveReader& a, std::vector<GroupField>& v) {
 /// One list of members for both directions. The binding stops compiling when a member is added.
 template <class Archive, class Field>
 void field(Archive& a, Field& f) {
-  auto& [lanes, list, nodes, triangle_facet, element_facet, element_level, element_x, element_y,
-         element_area, irradiance, body_irradiance, standard_error, valid, unit] = f;
+  auto& [lanes, list, nodes, triangle_facet, cut_list, element_facet, element_level, element_x,
+         element_y, element_area, irradiance, body_irradiance, standard_error, valid, unit] = f;
   a(lanes);
   facets(a, list);
   a(nodes);
   a(triangle_facet);
+  cuts(a, cut_list);
   a(element_facet);
   a(element_level);
   a(element_x);
@@ -81,11 +97,6 @@ void field(Archive& a, Field& f) {
   a(standard_error);
   a(valid);
   a(unit);
-}
-
-bool all_below(const std::vector<std::uint32_t>& v, std::size_t limit) {
-  return std::all_of(v.begin(), v.end(),
-                     [&](std::uint32_t i) { return i < limit || i == SurfaceField::kNone; });
 }
 
 /// The grids lie in the array, and behind them every block of children has one parent, in front of
@@ -134,6 +145,23 @@ bool elements_consistent(const SurfaceField& f) {
   return true;
 }
 
+/// Triangles lead to facets, cuts to facets or to cuts behind themselves: every walk ends.
+bool cuts_consistent(const SurfaceField& f) {
+  const auto leads_on = [&](std::uint32_t i, std::size_t from) {
+    if (SurfaceField::is_cut(i)) {
+      const std::uint32_t cut = i & ~SurfaceField::kCut;
+      return cut >= from && cut < f.cuts.size();
+    }
+    return i == SurfaceField::kNone || i < f.facets.size();
+  };
+  for (const std::uint32_t i : f.triangle_facet)
+    if (!leads_on(i, 0)) return false;
+  for (std::size_t k = 0; k < f.cuts.size(); ++k)
+    for (const std::uint32_t child : f.cuts[k].child)
+      if (!leads_on(child, k + 1)) return false;
+  return true;
+}
+
 /// Look-ups index without checks, so every index is checked here.
 bool consistent(const SurfaceField& f) {
   const std::size_t n = f.element_count();
@@ -141,8 +169,7 @@ bool consistent(const SurfaceField& f) {
     return v.empty() || v.size() == size;
   };
   bool ok = (f.lanes == 1 || f.lanes == 3 || f.lanes == 4 || f.lanes == 8) &&
-            all_below(f.triangle_facet, f.facets.size()) && nodes_consistent(f) &&
-            elements_consistent(f);
+            cuts_consistent(f) && nodes_consistent(f) && elements_consistent(f);
   const std::size_t values = n * 2 * static_cast<std::size_t>(std::max(f.lanes, 0));
   for (const SurfaceField::Quantities* q : {&f.irradiance, &f.body_irradiance}) {
     ok = ok && sized(q->direct, values) && sized(q->caustic, values) && sized(q->indirect, values);

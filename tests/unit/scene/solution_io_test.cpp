@@ -41,7 +41,9 @@ Solution sample_solution() {
   }
   constexpr std::uint32_t kNone = SurfaceField::kNone;
   f.nodes = {0, 1, SurfaceField::kInner | 4U, kNone, kNone, 2, kNone, kNone};
-  f.triangle_facet = {0, 1, SurfaceField::kNone};
+  f.triangle_facet = {0, SurfaceField::kCut | 0, kNone};
+  f.cuts = {{{1, 2, 3}, {0, 1, 0}, {1, SurfaceField::kCut | 1}},
+            {{4, 5, 6}, {1, 0, 0}, {kNone, 0}}};
   f.element_facet = {0, 0, 1};
   f.element_level = {0, 0, 1};
   f.element_x = {0, 1, 1};
@@ -120,6 +122,9 @@ TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
   refused([](SurfaceField& f) { f.element_x[1] = 2; });
   refused([](SurfaceField& f) { f.element_facet[0] = 7; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
+  refused([](SurfaceField& f) { f.triangle_facet[0] = SurfaceField::kCut | 2; });
+  refused([](SurfaceField& f) { f.cuts[1].child[0] = SurfaceField::kCut | 1; });  // round in circles
+  refused([](SurfaceField& f) { f.cuts[0].child[0] = 2; });
   refused([](SurfaceField& f) { f.facets[1].first_cell = 7; });
   refused([](SurfaceField& f) { f.facets[1].nx = 0; });
   refused([](SurfaceField& f) { f.irradiance.direct.pop_back(); });

@@ -19,6 +19,7 @@ template <int N>
 struct LightSample {
   Vec3f wi;               ///< unit, towards the light
   float distance = 0.0f;  ///< to the sampled point; infinity for sun and environment
+  Vec3f end = Vec3f::Zero();  ///< where a shadow ray ends: the point, off an emissive surface; finite lights only
   Spectrum<N> radiance;   ///< radiance of the light towards the point; for Dirac lights the
                           ///< irradiance on a plane facing them
   float pdf = 0.0f;  ///< [1/sr] including the choice of the light; Dirac: probability of the choice
