@@ -359,7 +359,7 @@ std::vector<Case> enclosure_cases() {
           sphere_zones(5, true),
           sphere_point_source(),
           flux_balance(Solver::Matrix, "matrix", 1e-9, 1),
-          flux_balance(Solver::Shooting, "shooting", 2e-3, 8),
+          flux_balance(Solver::Shooting, "shooting", 1e-4, 1),
           flux_balance(Solver::Rows, "rows", 5e-3, 8),
           reciprocity(),
           invariance()};
