@@ -47,6 +47,7 @@ struct SolveSettings {
   SolverChoice solver = SolverChoice::Rows;
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
+  double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
   double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
   int probes = 0;              ///< points of the certificate

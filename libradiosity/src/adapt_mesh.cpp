@@ -121,12 +121,20 @@ class MeshAdapter {
   }
 
  private:
+  /// \param beside  bytes of what is being replaced.
+  void count_memory(std::uint64_t elements_beside, std::uint64_t samples_beside) {
+    work_.memory().hold(MemoryBudget::Part::Elements,
+                        bytes_of(mesh_.elements) + problem_->bytes() + elements_beside);
+    work_.memory().hold(MemoryBudget::Part::Samples, mesh_.direct.bytes() + samples_beside);
+  }
+
   void measure_all() {
     problem_ = std::make_unique<Problem<N>>(shading_, mesh_.elements, options_);
     mesh_.direct =
         Tally<N>(problem_->side_count(), problem_->group_count(), problem_->sides.any_coupled);
     sample_direct(*problem_, DirectLights::All, {}, top_up(*problem_, mesh_.direct, problem_->sides.active, kPilot),
                   mesh_.direct, work_, counters_);
+    count_memory(0, 0);
   }
 
   /// Marks the elements that have to be divided; empty if none.
@@ -190,8 +198,12 @@ class MeshAdapter {
     }
     sample_direct(*next, DirectLights::All, {}, top_up(*next, tally, fresh, kPilot), tally, work_, counters_);
     old.layout.valid = problem_->sides.is_active;
+    const std::uint64_t old_elements = bytes_of(old) + problem_->bytes();
+    const std::uint64_t old_samples = mesh_.direct.bytes();
     problem_ = std::move(next);
     mesh_.direct = std::move(tally);
+    count_memory(old_elements, old_samples);
+    count_memory(bytes_of(old), 0);
     calibrate(old, before, fresh, refined.parent);
   }
 

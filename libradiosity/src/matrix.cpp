@@ -94,6 +94,7 @@ class MatrixSolver {
 
   void exchange_areas() {
     const auto n = static_cast<Eigen::Index>(size_);
+    require_memory();
     exchange_.assign(problem_.shading.has_medium() ? N : 1, Matrix::Zero(n, n));
     work_.run(size_, 4, counters_, [&](std::size_t begin, std::size_t end, Counters& c) {
       for (std::size_t i = begin; i < end; ++i)
@@ -104,6 +105,18 @@ class MatrixSolver {
         }
     });
     for (Matrix& m : exchange_) m.template triangularView<Eigen::StrictlyUpper>() = m.transpose();
+  }
+  void require_memory() {
+    constexpr std::uint64_t kSystem = 4;  // factors, the system, its factorisation and a product
+    const std::uint64_t matrices = kSystem + (problem_.shading.has_medium() ? N : 1);
+    const std::uint64_t bytes = matrices * size_ * size_ * sizeof(double);
+    MemoryBudget& memory = work_.memory();
+    if (bytes > memory.room(MemoryBudget::Part::Rows))
+      throw RuntimeFailure("radiosity: solver 'matrix' needs " + megabytes(bytes) + " for " +
+                           std::to_string(size_) + " element sides, and " +
+                           megabytes(memory.room(MemoryBudget::Part::Rows)) +
+                           " of the memory limit are left; use larger elements or solver 'rows'");
+    memory.hold(MemoryBudget::Part::Rows, bytes);
   }
   /// All lanes share one matrix where the air is clear: only mean transmittances count else.
   [[nodiscard]] const Matrix& exchange(int lane) const {

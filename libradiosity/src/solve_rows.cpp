@@ -98,6 +98,8 @@ class RowSolver {
   }
 
   Solution<N> solve() {
+    work_.memory().hold(MemoryBudget::Part::Samples,
+                        direct_.bytes() + shot_.bytes() + gathered_.bytes());
     if (stage_ == Stage::Light) {
       work_.begin("direct light", 0.15);
       draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
@@ -349,10 +351,21 @@ class RowSolver {
         const SideIndex i = problem_.sides.active[k];
         wanted[k] = is_lit(i) && samples_at_level(all, problem_.level(i)) >= to ? 1 : 0;
       }
+      if (!memory_holds(wanted, to - from)) {
+        work_.memory().give_up("rows of " + std::to_string(from) + " rays instead of " +
+                               std::to_string(all));
+        break;
+      }
       rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
     }
     solve_bounces();
     (void)paused(Stage::Rows);
+  }
+
+  [[nodiscard]] bool memory_holds(const std::vector<std::uint8_t>& wanted, int rays) const {
+    const auto rows = static_cast<std::uint64_t>(std::count(wanted.begin(), wanted.end(), 1));
+    return bytes_for_rows<N>(rows_.bytes(), rows * static_cast<std::uint64_t>(rays)) <=
+           work_.memory().room(MemoryBudget::Part::Rows);
   }
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
@@ -813,7 +826,7 @@ class RowSolver {
   /// Twice as many photons, all of them new. False if stopped or at the end of their numbers.
   bool more_photons() {
     const std::uint64_t next = photons_.count * 2;
-    if (next > 0xffffffffU) return false;
+    if (next > photons_that_fit<N>(work_.memory(), next)) return false;
     work_.begin("caustics", 0.98);
     Photons<N> photons = trace_photons(problem_, next, work_, counters_);
     if (work_.stopped()) {

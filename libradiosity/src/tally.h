@@ -51,6 +51,10 @@ class Tally {
         drawn_(sides, 0) {}
 
   [[nodiscard]] std::size_t groups() const { return groups_; }
+  [[nodiscard]] std::uint64_t bytes() const {
+    return bytes_of(plain_) + bytes_of(body_) + bytes_of(replicate_) + bytes_of(valid_) +
+           bytes_of(drawn_);
+  }
   /// Samples drawn so far in each replicate, valid or not.
   [[nodiscard]] std::uint32_t drawn(SideIndex i) const { return drawn_[i]; }
   [[nodiscard]] std::uint32_t valid(SideIndex i) const {

@@ -43,6 +43,9 @@ class ElementPieces {
         {piece.object, piece.triangle, piece.area, static_cast<std::uint32_t>(corners_.size())});
     corners_.insert(corners_.end(), piece.corners.begin(), piece.corners.end());
   }
+  [[nodiscard]] std::size_t bytes() const {
+    return records_.capacity() * sizeof(Record) + corners_.capacity() * sizeof(Vec3f);
+  }
   void shrink_to_fit() {
     records_.shrink_to_fit();
     corners_.shrink_to_fit();
