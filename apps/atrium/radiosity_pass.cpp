@@ -55,6 +55,8 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.time_limit = time_limit;
   o.memory_limit = static_cast<std::uint64_t>(1e6 * settings.memory_limit);
   o.error = settings.error;
+  if (settings.solver == SolverChoice::Rows)
+    for (const PictureView& v : settings.views) o.views.push_back({v.camera, v.aspect, v.crop});
   o.probes = settings.probes;
   return o;
 }
@@ -114,6 +116,7 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                              radiosity::Previous{previous->field, previous->state});
   RadiosityRun run;
   run.summary = summarise(result);
+  run.summary.views = static_cast<int>(options.views.size());
   if (settings.error > 0.0) run.summary.error_target = settings.error;
   for (const std::string& what : result.given_up)
     session.progress.warning("memory limit: " + what);

@@ -153,6 +153,7 @@ void add_solve(JsonWriter& json, const Statistics& s) {
   if (!s.radiosity_skipped.empty()) json.member("skipped", s.radiosity_skipped);
   if (s.solve) {
     json.member("elements", static_cast<std::uint64_t>(s.solve->elements));
+    json.member("effort", s.solve->views == 0 ? "everywhere" : "views");
     json.member("iterations", s.solve->iterations);
     json.member("residual", s.solve->residual);
     json.member("error_estimate", s.solve->error_estimate);

@@ -19,7 +19,8 @@ class ShootingSolver {
         emitters_(find_emitters(problem)),
         unshot_(problem.side_count()),
         received_(problem.side_count()),
-        beyond_(problem.side_count(), 0.0) {
+        beyond_(problem.side_count(), 0.0),
+        rays_(problem.shading.has_medium() ? kRaysInAir : kRays) {
     require_diffuse(problem, "shooting");
   }
 
@@ -45,7 +46,7 @@ class ShootingSolver {
           emitters_.empty() ? DirectLights::All : DirectLights::NoSurfaces, work_, counters_);
     for (Emitter<N>& e : emitters_) {
       if (work_.stopped()) return;
-      e.received = find_factors(e.patch, kNoSide, std::max(kRays, problem_.options.direct_samples));
+      e.received = find_factors(e.patch, kNoSide, std::max(rays_, problem_.options.direct_samples));
       for (const SideIndex j : problem_.sides.active)
         result_.direct.irradiance.plain[j] += e.exitance * received_[j];
     }
@@ -81,7 +82,7 @@ class ShootingSolver {
     const Patch shooter = element_patch(problem_.elements, i);
     const Spectrum<N> sent = unshot_[i];
     unshot_[i] = {};
-    const LaneValues<N> arrived = find_factors(shooter, i, kRays);
+    const LaneValues<N> arrived = find_factors(shooter, i, rays_);
     for (int lane = 0; lane < N; ++lane)
       beyond_[i] += static_cast<double>(sent[lane]) *
                     (shooter.area - arrived[static_cast<std::size_t>(lane)]) / N;
@@ -179,6 +180,9 @@ class ShootingSolver {
   }
 
   static constexpr int kRays = 4;  ///< of a pair
+  /// What the air lets pass is a ratio of sums: of few rays it would be biased between near patches,
+  /// where short ways count most.
+  static constexpr int kRaysInAir = 16;
 
   const Problem<N>& problem_;
   Work& work_;
@@ -188,6 +192,7 @@ class ShootingSolver {
   SideValues<N> unshot_;              ///< radiosity that has not been sent
   SideValues<N> received_;            ///< irradiance per exitance of the current shooter
   std::vector<double> beyond_;        ///< by side: flux, lane mean, that no side received
+  int rays_;  ///< of a pair
   std::size_t shots_ = 0;
   std::size_t shooters_ = 0;  ///< emitters included
 };

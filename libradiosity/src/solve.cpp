@@ -246,6 +246,8 @@ SolveResult solve_from(const scene::RayQuery& query, const material::SpectralBas
                        const Previous* previous) {
   if (previous != nullptr && options.solver != Solver::Rows)
     throw Error("radiosity: only the solver 'rows' can go on from a solution");
+  if (!options.views.empty() && (options.keep != Keep::Nothing || options.solver != Solver::Rows))
+    throw std::invalid_argument("radiosity: views are for solutions of rows that are not kept");
   Work work(control, options.time_limit, options.memory_limit);
   SolveResult result;
   with_lanes(basis.lanes(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include "material/spectral_basis.h"
 #include "radiosity/elements.h"
 #include "radiosity/memory_use.h"
+#include "scene/camera.h"
 #include "scene/control.h"
 #include "scene/counters.h"
 #include "scene/light_groups.h"
@@ -27,6 +29,13 @@ enum class Keep {
   Nothing,
   Samples,  ///< sums of samples; rows are traced again
   Rows      ///< and the rows, about 16 bytes per ray
+};
+
+/// A picture that will be made of a solution.
+struct View {
+  scene::Camera camera;
+  double aspect = 4.0 / 3.0;                      ///< width / height of the whole picture
+  std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1: the part that is wanted
 };
 
 struct SolveOptions {
@@ -52,6 +61,10 @@ struct SolveOptions {
   std::uint64_t memory_limit = 0;
   std::uint64_t seed = 1;
   Keep keep = Keep::Nothing;  ///< solver Rows only
+  /// If nothing but pictures of these views will use the solution: surfaces that none of them sees,
+  /// nor light straight from, get fewer samples, and errors are weighted by what they matter. Solver
+  /// Rows with keep Nothing only. Empty: every surface matters.
+  std::vector<View> views = {};
   scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
   bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
   int probes = 0;  ///< points of the Certificate; 0: none is made
@@ -122,6 +135,7 @@ struct Previous {
 /// Solves diffuse inter-reflection, also through panes, mirrors, solids and rough lobes.
 /// \throws Error  if a closed enclosure reflects everything (no finite solution), or a solver that
 /// knows no light groups finds several.
+/// \throws std::invalid_argument  if views are given for a solution that is kept or another solver.
 /// \throws RuntimeFailure  if the memory limit does not even hold the scene.
 [[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
                                 const SolveOptions& options = {},

@@ -253,6 +253,37 @@ TEST_F(AtriumRun, StatisticsSayWhichErrorIsMeant) {
   EXPECT_NE(radiosity.find("\"verdict\": \""), none) << radiosity;
 }
 
+// Grey: one lane, a third of the memory of the fields. The rays are the same.
+TEST_F(AtriumRun, GreyScenesAreSolvedInOneLane) {
+  const auto solve = [&] {
+    EXPECT_EQ(run(folder, "solve a.obj -o a.atrium --quality draft --quiet --stats s.json").code, 0);
+    return read_file(folder / "s.json");
+  };
+  const auto number = [](const std::string& stats, const std::string& name) {
+    const std::size_t at = stats.find("\"" + name + "\": ");
+    return at == std::string::npos ? -1.0 : std::stod(stats.substr(at + name.size() + 4));
+  };
+  const std::string grey = solve();
+  std::string red = kLitFloorMaterials;
+  red.replace(red.find("Kd 0.5 0.5 0.5"), 14, "Kd 0.5 0.4 0.3");
+  folder.write("a.mtl", red);
+  const std::string colour = solve();
+  EXPECT_NE(grey.find("\"spectrum\": \"1 grey lane\""), std::string::npos) << grey;
+  EXPECT_NE(colour.find("\"spectrum\": \"3 RGB lanes\""), std::string::npos) << colour;
+  EXPECT_GT(number(grey, "rays.row"), 0.0);
+  EXPECT_EQ(number(grey, "rays.row"), number(colour, "rays.row"));
+  EXPECT_LT(number(grey, "fields"), 0.5 * number(colour, "fields"));
+}
+
+TEST_F(AtriumRun, RenderSolvesForItsViewsUnlessTheSolutionIsKept) {
+  const std::string render =
+      "render a.obj -o a.pfm --size 24x18 --samples 2 --quality draft --quiet --stats s.json ";
+  ASSERT_EQ(run(folder, render).code, 0);
+  EXPECT_NE(read_file(folder / "s.json").find("\"effort\": \"views\""), std::string::npos);
+  ASSERT_EQ(run(folder, render + "--save-solution a.atrium").code, 0);
+  EXPECT_NE(read_file(folder / "s.json").find("\"effort\": \"everywhere\""), std::string::npos);
+}
+
 TEST_F(AtriumRun, MemoryLimitWarnsAndRefuses) {
   const std::string solve = "solve a.obj -o a.atrium --quality draft --quiet --stats s.json ";
   const Result less = run(folder, solve + "--memory-limit 10");
