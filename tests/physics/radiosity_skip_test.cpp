@@ -1,4 +1,6 @@
 // What does not matter costs few rays: surfaces that no picture shows, unlit rooms, black surfaces.
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "physics/radiosity_support.h"
@@ -70,6 +72,14 @@ TEST(Views, WhatNoPictureShowsGetsFewerRays) {
   options.views = {back_to_the_door()};
   const Solved seen(two_rooms(), options);
   const auto rays = [](const Solved& s) { return s.result.counters[Counter::RaysRow]; };
+  const auto record = [&](const char* what, const Solved& s) {
+    RecordProperty(std::string(what) + "_rays", std::to_string(rays(s)));
+    for (const bool second : {false, true})
+      RecordProperty(std::string(what) + (second ? "_error_other_room" : "_error_this_room"),
+                     std::to_string(room(s, second).error / room(s, second).mean));
+  };
+  record("everywhere", all);
+  record("views", seen);
   // Half the rooms get an eighth of the rays, but for a first round of 16 for all.
   EXPECT_LT(rays(seen), 0.7 * rays(all));
   EXPECT_GT(rays(seen), 0.5 * rays(all));
@@ -84,6 +94,8 @@ TEST(Views, WhatNoPictureShowsGetsFewerRays) {
   const Solved asked_seen(two_rooms(), options);
   options.views.clear();
   const Solved asked(two_rooms(), options);
+  record("asked_everywhere", asked);
+  record("asked_views", asked_seen);
   EXPECT_EQ(asked_seen.result.stopped_by, "error");
   EXPECT_LT(rays(asked_seen), 0.8 * rays(asked));
   EXPECT_LT(room(asked_seen, false).error, 0.03 * room(asked, false).mean);

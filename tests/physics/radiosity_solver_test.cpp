@@ -98,6 +98,7 @@ TEST(Shooting, OpenSceneBalances) {
   const Solved s(maker.take(), {.solver = Solver::Shooting, .element_size = 0.25});
   const FluxBalance& f = s.result.flux;
   EXPECT_NEAR(f.emitted, kPi, 1e-6);
+  RecordProperty("imbalance", std::to_string(1e9 * (f.absorbed + f.escaped - f.emitted) / f.emitted) + "e-9");
   EXPECT_NEAR(f.absorbed + f.escaped, f.emitted, 1e-5 * f.emitted);
   EXPECT_NEAR(f.escaped, 0.8085 * f.emitted, 0.003 * f.emitted);  // the solver 'matrix': 0.80847
 }
