@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "scene/camera.h"
 #include "scene/light_groups.h"
 #include "trace/render.h"
 #include "trace/tone_map.h"
@@ -43,10 +44,18 @@ struct Effort {
 };
 [[nodiscard]] Effort effort_of(Quality quality);
 
+/// A picture that a solution is made for.
+struct PictureView {
+  scene::Camera camera;
+  double aspect = 4.0 / 3.0;
+  std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};
+};
+
 struct SolveSettings {
   SolverChoice solver = SolverChoice::Rows;
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
+  double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
   double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
   int probes = 0;              ///< points of the certificate
@@ -54,6 +63,7 @@ struct SolveSettings {
   scene::Grouping light_groups = scene::Grouping::One;
   bool keep_state = false;  ///< a solution is written, from which a later run may go on
   bool keep_rows = false;   ///< with the rows
+  std::vector<PictureView> views;  ///< all that will use the solution; empty: anything may
 };
 
 struct RenderCommand {

@@ -79,6 +79,10 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
   app.add_option("--time-limit", o.time_limit, "stop computing after this time [s]; 0: none")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
+  app.add_option("--memory-limit", o.memory_limit,
+                 "what the scene and its radiosity may hold [MB]; 0: no limit")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
   app.add_option("--probes", o.probes,
                  "points where path tracing checks the radiosity and states its error; 0: none")
@@ -148,7 +152,8 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
     const std::string why = "has no meaning with --method " +
                             std::string(o.method == trace::Method::Path ? "path" : "direct") +
                             ", which uses no radiosity";
-    for (const char* name : {"--solution", "--save-solution", "--solver", "--indirect"}) {
+    for (const char* name :
+         {"--solution", "--save-solution", "--solver", "--indirect", "--memory-limit"}) {
       refuse(name, why);
     }
   }
@@ -172,7 +177,8 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   }
   if (!o.solution.empty()) {
     refuse("--save-solution", "there is nothing new to save with --solution");
-    refuse("--solver", "nothing is solved with --solution");
+    for (const char* name : {"--solver", "--memory-limit"})
+      refuse(name, "nothing is solved with --solution");
   }
 }
 
@@ -217,7 +223,7 @@ MeasureCommand finish(MeasureCommand o, const std::vector<std::string>& grid, co
   if (o.work_plane && !std::isfinite(*o.work_plane))
     throw Error("--workplane: must be a height in metres");
   if (!o.solution.empty())
-    for (const char* name : {"--solver", "--quality", "--time-limit"})
+    for (const char* name : {"--solver", "--quality", "--time-limit", "--memory-limit"})
       if (app.count(name) > 0)
         throw Error(std::string(name) + ": nothing is solved with --solution");
   return o;

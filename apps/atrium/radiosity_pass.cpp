@@ -53,7 +53,10 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.light_groups = settings.light_groups;
   o.paper_weights = settings.paper_weights;
   o.time_limit = time_limit;
+  o.memory_limit = static_cast<std::uint64_t>(1e6 * settings.memory_limit);
   o.error = settings.error;
+  if (settings.solver == SolverChoice::Rows)
+    for (const PictureView& v : settings.views) o.views.push_back({v.camera, v.aspect, v.crop});
   o.probes = settings.probes;
   return o;
 }
@@ -89,6 +92,10 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.escaped = r.flux.escaped;
   s.in_medium = r.flux.in_medium;
   s.flux_error = r.flux.standard_error;
+  s.memory = {{"scene", r.memory.scene},     {"bvh", r.memory.bvh},
+              {"elements", r.memory.elements}, {"samples", r.memory.samples},
+              {"photons", r.memory.photons}, {"rows", r.memory.rows},
+              {"fields", r.memory.fields},   {"peak", r.memory.peak}};
   s.counters = r.counters;
   return s;
 }
@@ -109,6 +116,10 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                              radiosity::Previous{previous->field, previous->state});
   RadiosityRun run;
   run.summary = summarise(result);
+  run.summary.views = static_cast<int>(options.views.size());
+  if (settings.error > 0.0) run.summary.error_target = settings.error;
+  for (const std::string& what : result.given_up)
+    session.progress.warning("memory limit: " + what);
   if (settings.probes > 0) run.summary.certificate = summarise(result.certificate);
   if (want_mesh) {
     run.mesh =

@@ -138,6 +138,13 @@ class MeshAdapter {
   }
 
  private:
+  /// \param beside  bytes of what is being replaced.
+  void count_memory(std::uint64_t elements_beside, std::uint64_t samples_beside) {
+    work_.memory().hold(MemoryBudget::Part::Elements,
+                        bytes_of(mesh_.elements) + problem_->bytes() + elements_beside);
+    work_.memory().hold(MemoryBudget::Part::Samples, direct_.bytes() + samples_beside);
+  }
+
   void measure_all() {
     problem_ = std::make_unique<Problem<N>>(shading_, surroundings_, mesh_.elements, options_);
     direct_ =
@@ -145,6 +152,7 @@ class MeshAdapter {
     sample_direct(*problem_, DirectLights::All, {},
                   top_up(*problem_, direct_, problem_->sides.active, kPilot), direct_, work_,
                   counters_);
+    count_memory(0, 0);
   }
 
   /// Marks the elements that have to be divided; empty if none.
@@ -230,8 +238,12 @@ class MeshAdapter {
       sample_direct(*next, DirectLights::All, {}, top_up(*next, tally, sides, kPilot), tally, work_,
                     counters_);
     old.layout.valid = before.known;
+    const std::uint64_t old_elements = bytes_of(old) + problem_->bytes();
+    const std::uint64_t old_samples = direct_.bytes();
     problem_ = std::move(next);
     direct_ = std::move(tally);
+    count_memory(old_elements, old_samples);
+    count_memory(bytes_of(old), 0);
     calibrate(old, before, fresh, refined.parent);
   }
 

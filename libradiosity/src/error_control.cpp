@@ -64,20 +64,25 @@ SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
 }
 
 template <int N>
-std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance) {
+std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance,
+                                  const std::vector<float>& importance) {
+  const auto area_of = [&](SideIndex i) {
+    return static_cast<double>(problem.area(i)) *
+           (importance.empty() ? 1.0 : static_cast<double>(importance[i]));
+  };
   double area = 0.0;
   double flux = 0.0;
   for (const SideIndex i : problem.sides.active) {
     if (irradiance[i].is_zero()) continue;
-    area += static_cast<double>(problem.area(i));
-    flux += static_cast<double>(problem.area(i)) * static_cast<double>(irradiance[i].mean());
+    area += area_of(i);
+    flux += area_of(i) * static_cast<double>(irradiance[i].mean());
   }
   std::vector<double> weights(problem.side_count(), 0.0);
   if (!(flux > 0.0)) return weights;
   const double least = 0.01 * flux / area;
   for (const SideIndex i : problem.sides.active) {
     const double scale = std::max(least, static_cast<double>(irradiance[i].mean()));
-    weights[i] = static_cast<double>(problem.area(i)) / (area * scale * scale);
+    weights[i] = area_of(i) / (area * scale * scale);
   }
   return weights;
 }
@@ -157,7 +162,8 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
 
 #define ATRIUM_INSTANTIATE(N)                                                                    \
   template class Smoothing<N>;                                                                   \
-  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&);            \
+  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&,             \
+                                             const std::vector<float>&);                         \
   template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
                                                const Tally<N>&, Samples, GroupChoice);           \
   template std::vector<std::vector<Draw>> plan_samples(const Problem<N>&,                        \

@@ -53,9 +53,11 @@ class Smoothing {
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
 /// floor of 1 % of the mean. Sides that no light reaches do not count: they would only make the
 /// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 8).
+/// \param importance  that multiplies the area, by side; empty: 1.
 template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
-                                                const SideValues<N>& irradiance);
+                                                const SideValues<N>& irradiance,
+                                                const std::vector<float>& importance = {});
 
 /// Variance of one sample of each side (lane mean, of all groups or one), pooled as relative variance: of the
 /// neighbours' samples for a decision about a side, which must not depend on the samples that it

@@ -47,7 +47,10 @@ struct Photons {
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,
                                        scene::Counters& counters);
-/// As many as the scene needs by the options.
+/// How many photons may wait for their places at once, at most `wanted`?
+template <int N>
+[[nodiscard]] std::uint64_t photons_that_fit(const MemoryBudget& memory, std::uint64_t wanted);
+/// As many as the scene needs by the options and there is memory for.
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, Work& work,
                                        scene::Counters& counters);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "memory_budget.h"
+
 namespace atrium::radiosity {
 
 using scene::Side;
@@ -86,6 +88,10 @@ ElementPoints::Spot ElementPoints::spot(std::uint32_t element, float u, float v)
   const float root = own > 0.0f ? std::sqrt(std::clamp((x - before) / own, 0.0f, 1.0f)) : 0.5f;
   const Fan& f = fans_[fan];
   return {f.corner + (root * (1.0f - v)) * f.edge1 + (root * v) * f.edge2, fan};
+}
+
+std::size_t ElementPoints::bytes() const {
+  return bytes_of(first_) + bytes_of(fans_) + bytes_of(area_until_);
 }
 
 SurfacePoint ElementPoints::surface(const Spot& spot) const {
@@ -277,6 +283,12 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Surroundings& sur
     if (sides.is_active[i] != 0) sides.active.push_back(i);
   sides.any_coupled = std::any_of(sides.coupled.begin(), sides.coupled.end(),
                                   [](std::uint8_t c) { return c != 0; });
+}
+
+template <int N>
+std::size_t Problem<N>::bytes() const {
+  return points.bytes() + bytes_of(streams_) + bytes_of(sides.active) + bytes_of(sides.is_active) +
+         bytes_of(sides.reflectance) + bytes_of(sides.transmittance) + bytes_of(sides.coupled);
 }
 
 template <int N>

@@ -46,6 +46,7 @@ class ElementPoints {
   [[nodiscard]] float error(std::uint32_t fan) const { return fans_[fan].error; }
   /// \param u  in [0, 1)^2.
   [[nodiscard]] scene::SurfacePoint sample(std::uint32_t element, const Vec2f& u) const;
+  [[nodiscard]] std::size_t bytes() const;
   /// The surface at a spot, for materials.
   [[nodiscard]] scene::SurfacePoint surface(const Spot& spot) const;
 
@@ -126,6 +127,8 @@ struct Problem {
   [[nodiscard]] int level(SideIndex i) const { return elements.layout.element_level[i / 2]; }
   /// Number of a side's own random sequence.
   [[nodiscard]] std::uint32_t stream(SideIndex i) const { return streams_[i]; }
+  /// Counted bytes of what this holds beside the elements.
+  [[nodiscard]] std::size_t bytes() const;
   /// The active side that a hit belongs to, or kNoSide.
   [[nodiscard]] SideIndex side_at(scene::ObjectId object, std::uint32_t triangle,
                                   const Vec3f& position, scene::Side side) const;

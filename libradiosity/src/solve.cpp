@@ -5,6 +5,7 @@
 #include "adapt_mesh.h"
 #include "certificate.h"
 #include "material/error.h"
+#include "memory_plan.h"
 #include "solvers.h"
 #include "state_head.h"
 
@@ -123,11 +124,48 @@ AdaptedMesh make_mesh(const scene::Shading<N>& shading, const Surroundings& surr
   Elements elements = make_elements(shading.scene(), {.element_size = options.element_size,
                                                       .max_elements = start,
                                                       .max_level = options.max_level});
+  work.memory().hold(MemoryBudget::Part::Elements, bytes_of(elements));
   if (previous != nullptr)
     return {elements_of(shading.scene(), std::move(elements), previous->field), 0.0};
   if (!adapt) return {std::move(elements), 0.0};
   work.begin("mesh", 0.1);
   return adapt_mesh(shading, surroundings, std::move(elements), options, work, counters);
+}
+
+/// The options with elements for which there is memory.
+SolveOptions within_memory(SolveOptions options, const scene::Scene& scene, const SideShape& shape,
+                           const Previous* previous, MemoryBudget& memory) {
+  if (previous != nullptr) return options;
+  std::uint32_t wanted = options.max_elements;
+  if (options.element_size > 0.0) {
+    double area = 0.0;
+    for (std::size_t o = 0; o < scene.objects.size(); ++o)
+      for (std::uint32_t t = 0; t < scene.mesh_of(scene::ObjectId(o)).triangles.size(); ++t) {
+        const std::array<Vec3f, 3> c = scene.corners(scene::ObjectId(o), t);
+        area += 0.5 * static_cast<double>((c[1] - c[0]).cross(c[2] - c[0]).norm());
+      }
+    wanted = static_cast<std::uint32_t>(
+        std::min(4e9, area / (options.element_size * options.element_size) + 1.0));
+  }
+  const std::uint32_t fit = elements_that_fit(memory, scene, shape, wanted);
+  if (fit >= wanted) return options;
+  memory.give_up("about " + std::to_string(fit) + " elements instead of " + std::to_string(wanted));
+  options.max_elements = fit;
+  options.element_size = 0.0;
+  return options;
+}
+
+/// What is known now: does a first round of rays fit?
+template <int N>
+void require_memory(const Problem<N>& problem, const SideShape& shape, MemoryBudget& memory) {
+  using Part = MemoryBudget::Part;
+  memory.hold(Part::Elements, bytes_of(problem.elements) + problem.bytes());
+  memory.hold(Part::Fields, problem.side_count() * field_bytes_per_side(shape));
+  if (memory.limit() > 0 && memory.held() > memory.limit())
+    throw RuntimeFailure("radiosity: a memory limit of " + megabytes(memory.limit()) +
+                         " does not hold this scene: its " +
+                         std::to_string(problem.elements.layout.element_count()) +
+                         " elements need " + megabytes(memory.held()));
 }
 
 template <int N>
@@ -166,6 +204,18 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   }
   const scene::Shading<N> shading(
       query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
+  MemoryBudget& memory = work.memory();
+  memory.hold(MemoryBudget::Part::Scene, bytes_of(query.scene()));
+  memory.hold(MemoryBudget::Part::Bvh, query.memory_bytes());
+  SideShape shape{.lanes = N,
+                  .groups = scene::find_light_groups(query.scene(), options.light_groups).size(),
+                  .body = std::any_of(query.scene().materials.begin(), query.scene().materials.end(),
+                                      [](const material::Material& m) {
+                                        return material::traits(m).coupled;
+                                      }),
+                  .solver = options.solver,
+                  .keep = options.keep};
+  options = within_memory(options, query.scene(), shape, previous, memory);
   const Surroundings surroundings(shading.scene());
   AdaptedMesh mesh = make_mesh(shading, surroundings, options, previous, work, result.counters);
   result.elements = std::move(mesh.elements);
@@ -175,6 +225,8 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   if (work.stopped() || options.solver != Solver::Rows) options.keep = Keep::Nothing;
   result.counters[Counter::Elements] += result.elements.layout.element_count();
   const Problem<N> problem(shading, surroundings, result.elements, options);
+  shape.body = problem.sides.any_coupled;
+  require_memory(problem, shape, memory);
   Solution<N> solution = run_solver(problem, start, work, result.counters);
   if (!solution.state.empty()) {
     scene::ArchiveWriter writer;
@@ -199,10 +251,13 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
                                           work, result.counters);
   result.complete = work.stopped_by().empty();
   result.stopped_by = !result.complete                ? work.stopped_by()
+                      : !memory.given_up().empty()     ? "memory limit"
                       : !solution.iteration.converged ? "iterations"
                       : options.error == 0.0          ? "tolerance"
                       : solution.error_reached        ? "error"
                                                       : "rounds";
+  result.memory = memory.use();
+  result.given_up = memory.given_up();
   result.counters[Counter::Iterations] += static_cast<std::uint64_t>(result.iterations);
   result.counters[Counter::ElementSides] += problem.sides.active.size();
 }
@@ -216,7 +271,9 @@ SolveResult solve_from(const scene::RayQuery& query, const material::SpectralBas
                        const Previous* previous) {
   if (previous != nullptr && options.solver != Solver::Rows)
     throw Error("radiosity: only the solver 'rows' can go on from a solution");
-  Work work(control, options.time_limit);
+  if (!options.views.empty() && (options.keep != Keep::Nothing || options.solver != Solver::Rows))
+    throw std::invalid_argument("radiosity: views are for solutions of rows that are not kept");
+  Work work(control, options.time_limit, options.memory_limit);
   SolveResult result;
   with_lanes(basis.lanes(), [&](auto lanes) {
     solve_lanes<lanes()>(query, basis, options, previous, work, result);

@@ -1,6 +1,7 @@
 #include "error_control.h"
 #include "scene/archive.h"
 #include "solvers.h"
+#include "view_importance.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -96,6 +97,8 @@ class RowSolver {
   }
 
   Solution<N> solve() {
+    work_.memory().hold(MemoryBudget::Part::Samples,
+                        direct_.bytes() + shot_.bytes() + gathered_.bytes());
     if (stage_ == Stage::Light) {
       work_.begin("direct light", 0.15);
       draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
@@ -155,12 +158,12 @@ class RowSolver {
     if (stage_ < Stage::Gather) {
       const std::vector<SideIndex> lit = lit_sides();
       if (rays >= kWorthwhile) {
-        draw_gather(top_up(problem_, gathered_, lit, rays / 4));
+        draw_gather(top_up(problem_, gathered_, lit, rays / 4, importance_));
         const bool stop = paused(Stage::FirstGather);
         assemble();
         if (stop || paused(Stage::FirstGather)) return;
       }
-      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays);
+      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays, importance_);
       if (rays >= kWorthwhile) refine_field(rest);
       gather_goals_ = goals_of(rest, gathered_);
     }
@@ -334,8 +337,10 @@ class RowSolver {
     find_buried();
     draw_direct_of_mixed();
     take_direct();
+    importance_ = view_importance(problem_, rows_, counters_);
     draw_hot(top_up(problem_, shot_, problem_.sides.active,
-                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2)));
+                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2),
+                    importance_));
     solve_bounces();
     (void)paused(Stage::Rows);
     if (first == all) return;
@@ -345,12 +350,23 @@ class RowSolver {
       std::vector<std::uint8_t> wanted(n, 0);
       for (std::size_t k = 0; k < n; ++k) {
         const SideIndex i = problem_.sides.active[k];
-        wanted[k] = is_lit(i) && samples_at_level(all, problem_.level(i)) >= to ? 1 : 0;
+        wanted[k] = is_lit(i) && samples_of(problem_, importance_, i, all) >= to ? 1 : 0;
+      }
+      if (!memory_holds(wanted, to - from)) {
+        work_.memory().give_up("rows of " + std::to_string(from) + " rays instead of " +
+                               std::to_string(all));
+        break;
       }
       rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
     }
     solve_bounces();
     (void)paused(Stage::Rows);
+  }
+
+  [[nodiscard]] bool memory_holds(const std::vector<std::uint8_t>& wanted, int rays) const {
+    const auto rows = static_cast<std::uint64_t>(std::count(wanted.begin(), wanted.end(), 1));
+    return bytes_for_rows<N>(rows_.bytes(), rows * static_cast<std::uint64_t>(rays)) <=
+           work_.memory().room(MemoryBudget::Part::Rows);
   }
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
@@ -680,7 +696,7 @@ class RowSolver {
       group_variances_.push_back(variances(g));
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    weights_ = error_weights(problem_, irradiance);
+    weights_ = error_weights(problem_, irradiance, importance_);
     result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
                                        weighted(result_.caustic.variance) +
                                        weighted(result_.indirect.variance));
@@ -811,7 +827,7 @@ class RowSolver {
   /// Twice as many photons, all of them new. False if stopped or at the end of their numbers.
   bool more_photons() {
     const std::uint64_t next = photons_.count * 2;
-    if (next > 0xffffffffU) return false;
+    if (next > photons_that_fit<N>(work_.memory(), next)) return false;
     work_.begin("caustics", 0.98);
     Photons<N> photons = trace_photons(problem_, next, work_, counters_);
     if (work_.stopped()) {
@@ -836,6 +852,7 @@ class RowSolver {
   HotPatches<N> hot_;
   std::vector<float> exposed_;   ///< by side: share of its area outside closed bodies
   std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
+  std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
   std::vector<double> weights_;  ///< of squared errors, by side
   std::vector<Variances> group_variances_;  ///< if there are several groups
 

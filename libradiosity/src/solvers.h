@@ -88,7 +88,19 @@ template <int N>
 [[nodiscard]] FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& solution,
                                        const Photons<N>& photons, const Rows<N>& rows);
 
-/// \throws Error  naming the solver if something mirrors, refracts or glosses or the air absorbs.
+/// Where the light of a side goes that no side receives, as shares of it.
+struct Beyond {
+  double escaped = 1.0;
+  double absorbed = 0.0;  ///< by surfaces without elements: black ones, and inner faces of bodies
+  double in_medium = 0.0;
+};
+/// For solvers that know from factors how much that is; what becomes of it is asked of hemisphere
+/// rays. By active side.
+template <int N>
+[[nodiscard]] std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work,
+                                               scene::Counters& counters);
+
+/// \throws Error  naming the solver if something mirrors, refracts or glosses.
 template <int N>
 void require_diffuse(const Problem<N>& problem, const char* solver);
 

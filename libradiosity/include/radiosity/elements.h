@@ -58,6 +58,10 @@ class ElementPieces {
   [[nodiscard]] const std::vector<TrianglePart>& parts() const { return parts_; }
   void add_part(const TrianglePart& part) { parts_.push_back(part); }
   void set_parts(std::vector<TrianglePart> parts) { parts_ = std::move(parts); }
+  [[nodiscard]] std::size_t bytes() const {
+    return records_.capacity() * sizeof(Record) + corners_.capacity() * sizeof(Vec3f) +
+           parts_.capacity() * sizeof(TrianglePart);
+  }
   void shrink_to_fit() {
     records_.shrink_to_fit();
     corners_.shrink_to_fit();
