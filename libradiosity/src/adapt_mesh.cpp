@@ -125,7 +125,7 @@ class MeshAdapter {
     problem_ = std::make_unique<Problem<N>>(shading_, mesh_.elements, options_);
     mesh_.direct =
         Tally<N>(problem_->side_count(), problem_->group_count(), problem_->sides.any_coupled);
-    sample_direct(*problem_, DirectLights::All, {}, top_up(*problem_, mesh_.direct, problem_->sides.active, kPilot),
+    sample_direct(*problem_, Purpose::Decide, DirectLights::All, {}, top_up(*problem_, mesh_.direct, problem_->sides.active, kPilot),
                   mesh_.direct, work_, counters_);
   }
 
@@ -169,7 +169,7 @@ class MeshAdapter {
     SideValues<N> irradiance(problem_->side_count());
     for (const SideIndex i : problem_->sides.active)
       irradiance[i] = Spectrum<N>(light.value[i] + static_cast<float>(add));
-    return error_weights(*problem_, irradiance);
+    return error_weights(*problem_, irradiance, std::vector<float>(problem_->side_count(), 1.0f));
   }
 
   void divide(const std::vector<std::uint8_t>& split) {
@@ -188,7 +188,7 @@ class MeshAdapter {
       }
       fresh.push_back(i);
     }
-    sample_direct(*next, DirectLights::All, {}, top_up(*next, tally, fresh, kPilot), tally, work_, counters_);
+    sample_direct(*next, Purpose::Decide, DirectLights::All, {}, top_up(*next, tally, fresh, kPilot), tally, work_, counters_);
     old.layout.valid = problem_->sides.is_active;
     problem_ = std::move(next);
     mesh_.direct = std::move(tally);

@@ -62,20 +62,24 @@ SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
 }
 
 template <int N>
-std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance) {
+std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance,
+                                  const std::vector<float>& exposed) {
+  const auto area_of = [&](SideIndex i) {
+    return static_cast<double>(problem.area(i)) * static_cast<double>(exposed[i]);
+  };
   double area = 0.0;
   double flux = 0.0;
   for (const SideIndex i : problem.sides.active) {
     if (irradiance[i].is_zero()) continue;
-    area += static_cast<double>(problem.area(i));
-    flux += static_cast<double>(problem.area(i)) * static_cast<double>(irradiance[i].mean());
+    area += area_of(i);
+    flux += area_of(i) * static_cast<double>(irradiance[i].mean());
   }
   std::vector<double> weights(problem.side_count(), 0.0);
   if (!(flux > 0.0)) return weights;
   const double least = 0.01 * flux / area;
   for (const SideIndex i : problem.sides.active) {
     const double scale = std::max(least, static_cast<double>(irradiance[i].mean()));
-    weights[i] = static_cast<double>(problem.area(i)) / (area * scale * scale);
+    weights[i] = area_of(i) / (area * scale * scale);
   }
   return weights;
 }
@@ -123,15 +127,21 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
 template <int N>
 std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
                                             const std::vector<double>& weights,
+                                            const std::vector<float>& exposed,
                                             const std::vector<Stratum<N>>& strata, double share) {
   constexpr double kGrowth = 4.0;
+  constexpr double kFew = 16.0;
+  const auto cost = [&](const Stratum<N>& s, SideIndex i) {
+    return s.cost / static_cast<double>(exposed[i]);
+  };
   // Lagrange: n = lambda sqrt(weight * variance / cost); the sum of weight * variance / n is then
   // root_costs / lambda.
   double root_costs = 0.0;
   double now = 0.0;
   for (const Stratum<N>& s : strata)
     for (const SideIndex i : problem.sides.active) {
-      root_costs += std::sqrt(weights[i] * s.variance[i] * s.cost);
+      if (weights[i] == 0.0) continue;
+      root_costs += std::sqrt(weights[i] * s.variance[i] * cost(s, i));
       if (s.tally->valid(i) > 0) now += weights[i] * s.variance[i] / s.tally->valid(i);
     }
   const double lambda = now > 0.0 ? root_costs / (share * share * now) : 0.0;
@@ -139,14 +149,15 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
   for (std::size_t c = 0; c < strata.size(); ++c) {
     const Stratum<N>& s = strata[c];
     for (const SideIndex i : problem.sides.active) {
+      if (weights[i] == 0.0) continue;
       const double have = s.tally->valid(i);
-      const double wanted = std::min(lambda * std::sqrt(weights[i] * s.variance[i] / s.cost),
-                                     kGrowth * std::max(have, 1.0 * kReplicates));
+      const double wanted = std::min(lambda * std::sqrt(weights[i] * s.variance[i] / cost(s, i)),
+                                     kGrowth * std::max(have, kFew));
       // Less than a tenth more is not worth it.
       if (!(wanted > 1.1 * have)) continue;
       // Even numbers in each replicate; see HotPatches::kSamplesPerRay.
       const auto more = static_cast<std::uint32_t>(
-          std::ceil((wanted - have) / (2.0 * kReplicates))) * 2;
+          std::ceil((wanted - have) / (2.0 * kReplicates * static_cast<double>(exposed[i])))) * 2;
       plans[c].push_back({i, more});
     }
   }
@@ -155,11 +166,13 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
 
 #define ATRIUM_INSTANTIATE(N)                                                                    \
   template class Smoothing<N>;                                                                   \
-  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&);            \
+  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&,             \
+                                             const std::vector<float>&);                         \
   template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
                                                const Tally<N>&, Samples, GroupChoice);           \
   template std::vector<std::vector<Draw>> plan_samples(const Problem<N>&,                        \
                                                        const std::vector<double>&,               \
+                                                       const std::vector<float>&,                \
                                                        const std::vector<Stratum<N>>&, double);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -51,11 +51,12 @@ class Smoothing {
 };
 
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
-/// floor of 1 % of the mean. Sides that no light reaches do not count: they would only make the
+/// floor of 1 % of the mean. Only area outside closed bodies counts. Sides that no light reaches do not count: they would only make the
 /// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 8).
 template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
-                                                const SideValues<N>& irradiance);
+                                                const SideValues<N>& irradiance,
+                                                const std::vector<float>& exposed);
 
 /// Variance of one sample of each side (lane mean, of all groups or one), pooled as relative variance: of the
 /// neighbours' samples for a decision about a side, which must not depend on the samples that it
@@ -80,10 +81,13 @@ struct Stratum {
 
 /// What to draw next so that the root of the sum over strata of weight * variance / samples falls
 /// to `share` of what it is, at the least cost (Neyman allocation: samples as the root of weighted
-/// variance over cost); no side gets more than four times what it has.
+/// variance over cost); no side gets more than four times what it has. Where only a share of the
+/// points lies outside closed bodies a sample costs as many draws more.
+/// \param exposed  that share, by side.
 template <int N>
 [[nodiscard]] std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
                                                           const std::vector<double>& weights,
+                                                          const std::vector<float>& exposed,
                                                           const std::vector<Stratum<N>>& strata,
                                                           double share);
 

@@ -145,7 +145,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   result.mesh_error = head.mesh_error;
   // Elements that were being divided are no state: another solve would end with others.
   if (work.stopped() || options.solver != Solver::Rows) options.keep = Keep::Nothing;
-  start.direct = std::move(mesh.direct);
+  start.pilot = std::move(mesh.direct);
   result.counters[Counter::Elements] += result.elements.layout.element_count();
   const Problem<N> problem(shading, result.elements, options);
   Solution<N> solution = run_solver(problem, std::move(start), work, result.counters);

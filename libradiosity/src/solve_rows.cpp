@@ -50,16 +50,15 @@ enum class Stage : std::uint8_t { Light, Rows, FirstGather, Gather, RoundLight, 
 template <int N>
 class RowSolver {
  public:
-  RowSolver(const Problem<N>& problem, Tally<N> direct, Work& work, Counters& counters)
+  RowSolver(const Problem<N>& problem, Tally<N> pilot, Work& work, Counters& counters)
       : problem_(problem),
         work_(work),
         counters_(counters),
         result_(problem),
         neighbours_(problem.elements.layout),
         groups_(problem.group_count()),
-        direct_(direct.groups() > 0 ? std::move(direct)
-                                    : Tally<N>(problem.side_count(), problem.group_count(),
-                                               problem.sides.any_coupled)),
+        pilot_(std::move(pilot)),
+        direct_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         exposed_(problem.side_count(), 1.0f),
@@ -135,7 +134,7 @@ class RowSolver {
     draw_direct(top_up(problem_, direct_, sides, samples));
   }
   void draw_direct(const std::vector<Draw>& plan) {
-    sample_direct(problem_, DirectLights::All, mixed_, plan, direct_, work_, counters_);
+    sample_direct(problem_, Purpose::Count, DirectLights::All, mixed_, plan, direct_, work_, counters_);
   }
   void draw_hot(const std::vector<Draw>& plan) {
     sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
@@ -202,6 +201,7 @@ class RowSolver {
     a(trapped);
     iteration.trapped = trapped;
     restored_iteration_ = iteration;
+    pilot_.archive(a);
     direct_.archive(a);
     shot_.archive(a);
     gathered_.archive(a);
@@ -262,7 +262,8 @@ class RowSolver {
   [[nodiscard]] bool consistent() const {
     const std::size_t n = problem_.side_count();
     const bool body = problem_.sides.any_coupled;
-    bool ok = stage_ <= Stage::RoundGather && direct_.is_for(n, groups_.size(), body) &&
+    bool ok = stage_ <= Stage::RoundGather &&
+              (pilot_.groups() == 0 || pilot_.is_for(n, groups_.size(), body)) && direct_.is_for(n, groups_.size(), body) &&
               shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
               exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n;
     const auto in_range = [n](SideIndex i) { return i < n; };
@@ -328,8 +329,7 @@ class RowSolver {
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
     take_direct();
-    if (!hot_chosen_) hot_ = HotPatches<N>(problem_, sources());
-    hot_chosen_ = true;
+    if (!hot_chosen_) choose_hot();
     know_hot_light();
     rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
                           counters_);
@@ -353,6 +353,29 @@ class RowSolver {
     }
     solve_bounces();
     (void)paused(Stage::Rows);
+  }
+
+  /// By samples of their own.
+  void choose_hot() {
+    if (pilot_.groups() == 0)
+      pilot_ = Tally<N>(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
+    if (!sample_direct(problem_, Purpose::Decide, DirectLights::All, {},
+                       top_up(problem_, pilot_, problem_.sides.active, kPilot), pilot_, work_,
+                       counters_)) {
+      (void)paused(Stage::Rows);
+      return;
+    }
+    std::vector<SideValues<N>> source;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      source.emplace_back(problem_.side_count());
+      for (const SideIndex i : problem_.sides.active)
+        source[g][i] = (problem_.sides.coupled[i / 2] != 0 ? pilot_.mean_body(i, g)
+                                                           : pilot_.mean(i, g)) +
+                       exchange(problem_, groups_[g].caustic, i);
+    }
+    hot_ = HotPatches<N>(problem_, std::move(source));
+    pilot_ = {};
+    hot_chosen_ = true;
   }
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
@@ -505,7 +528,8 @@ class RowSolver {
       g.refined = true;
     }
     for (Draw& d : plan) {
-      const std::uint32_t have = gathered_.valid(d.side) / kReplicates;
+      const auto have = static_cast<std::uint32_t>(static_cast<float>(gathered_.valid(d.side)) /
+                                                   (kReplicates * exposed_[d.side]));
       if (d.more < have) continue;  // a few more go to what there is
       d.more += have;
       gathered_.drop_sums(d.side);
@@ -682,7 +706,7 @@ class RowSolver {
       group_variances_.push_back(variances(g));
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    weights_ = error_weights(problem_, irradiance);
+    weights_ = error_weights(problem_, irradiance, exposed_);
     result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
                                        weighted(result_.caustic.variance) +
                                        weighted(result_.indirect.variance));
@@ -778,7 +802,7 @@ class RowSolver {
         {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
          kShadowRayCost}};
     auto plans =
-        plan_samples(problem_, weights_, strata, kMargin * target / result_.error_estimate);
+        plan_samples(problem_, weights_, exposed_, strata, kMargin * target / result_.error_estimate);
     if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
     refine_field(plans[1]);
     direct_goals_ = goals_of(plans[0], direct_);
@@ -830,6 +854,7 @@ class RowSolver {
   Solution<N> result_;
   Neighbours neighbours_;
   std::vector<GroupLight<N>> groups_;
+  Tally<N> pilot_;     ///< lights, until hot patches are chosen
   Tally<N> direct_;    ///< lights
   Tally<N> shot_;      ///< first light of hot patches
   Tally<N> gathered_;  ///< everything else that diffuse surfaces reflect
@@ -858,7 +883,7 @@ class RowSolver {
 template <int N>
 Solution<N> solve_with_rows(const Problem<N>& problem, Start<N> start, Work& work,
                             Counters& counters) {
-  RowSolver<N> solver(problem, std::move(start.direct), work, counters);
+  RowSolver<N> solver(problem, std::move(start.pilot), work, counters);
   if (start.state != nullptr) solver.restore(*start.state, start.same_light);
   return solver.solve();
 }

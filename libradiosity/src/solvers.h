@@ -36,7 +36,7 @@ struct Solution {
 /// What is known before.
 template <int N>
 struct Start {
-  Tally<N> direct;  ///< light samples of the problem's sides, or empty
+  Tally<N> pilot;  ///< light samples of the problem's sides, Purpose::Decide, or empty
   scene::ArchiveReader* state = nullptr;  ///< Solution::state of the same elements
   bool same_light = true;                 ///< false: reflectances have changed since
 };
