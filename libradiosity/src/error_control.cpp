@@ -4,17 +4,6 @@
 
 namespace atrium::radiosity {
 
-using scene::SurfaceField;
-
-Neighbours::Neighbours(const SurfaceField& layout) {
-  first_.push_back(0);
-  for (const EdgeNeighbours& edges : edge_neighbours(layout)) {
-    for (const std::uint32_t n : edges)
-      if (n != SurfaceField::kNone) element_.push_back(n);
-    first_.push_back(static_cast<std::uint32_t>(element_.size()));
-  }
-}
-
 namespace {
 
 /// Mean over a side and its neighbours.
@@ -22,7 +11,7 @@ template <int N, class Value>
 double local_mean(const Neighbours& neighbours, SideIndex i, Value&& value) {
   double sum = value(i);
   double count = 1.0;
-  neighbours.visit(i, [&](SideIndex j) {
+  neighbours.visit(i, [&](SideIndex j, int) {
     sum += value(j);
     count += 1.0;
   });
@@ -30,36 +19,6 @@ double local_mean(const Neighbours& neighbours, SideIndex i, Value&& value) {
 }
 
 }  // namespace
-
-template <int N>
-Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
-                        const SideValues<N>& guide, const std::vector<double>& variance)
-    : problem_(&problem), neighbours_(&neighbours) {
-  for (const SideIndex i : problem.sides.active)
-    neighbours.visit(i, [&](SideIndex j) {
-      const double d = static_cast<double>(guide[i].mean()) - static_cast<double>(guide[j].mean());
-      const double v = variance[i] + variance[j];
-      const bool takes_part = problem.sides.is_active[j] != 0 && v > 0.0;
-      weight_.push_back(takes_part ? static_cast<float>(v / (v + d * d)) : 0.0f);
-    });
-}
-
-template <int N>
-SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
-  SideValues<N> result(values.size());
-  std::size_t at = 0;
-  for (const SideIndex i : problem_->sides.active) {
-    Spectrum<N> sum = problem_->area(i) * values[i];
-    float area = problem_->area(i);
-    neighbours_->visit(i, [&](SideIndex j) {
-      const float a = weight_[at++] * problem_->area(j);
-      sum += a * values[j];
-      area += a;
-    });
-    result[i] = sum / area;
-  }
-  return result;
-}
 
 template <int N>
 std::vector<double> error_weights(const Problem<N>& problem, const SideValues<N>& irradiance,
@@ -109,11 +68,11 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
     // A ratio of sums: relative variances of nearly dark sides are wild.
     double sum = 0.0;
     double sum_scale = 0.0;
-    const auto take = [&](SideIndex j) {
+    const auto take = [&](SideIndex j, int) {
       sum += own[j];
       sum_scale += scale[j];
     };
-    if (whose == Samples::All) take(i);
+    if (whose == Samples::All) take(i, 0);
     neighbours.visit(i, take);
     if (!(sum_scale > 0.0)) {
       sum = all;
@@ -165,7 +124,6 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                                    \
-  template class Smoothing<N>;                                                                   \
   template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&,             \
                                              const std::vector<float>&);                         \
   template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \

@@ -3,52 +3,10 @@
 #include <optional>
 #include <vector>
 
+#include "smoothing.h"
 #include "tally.h"
 
 namespace atrium::radiosity {
-
-/// Which sides lie next to each other in the same surface, on the same side: neighbours have
-/// nearly the same light but samples of their own.
-class Neighbours {
- public:
-  explicit Neighbours(const scene::SurfaceField& layout);
-  template <class F>
-  void visit(SideIndex i, F&& f) const {
-    for (std::uint32_t k = first_[i / 2]; k < first_[i / 2 + 1]; ++k)
-      f(side_index(element_[k], side_of(i)));
-  }
-
- private:
-  std::vector<std::uint32_t> first_, element_;
-};
-
-/// Weights of a smoothing over every side and its neighbours that takes noise off a field and
-/// leaves what is more than noise: a neighbour counts less the more standard errors its value is
-/// away, so more samples mean less smoothing.
-template <int N>
-class Smoothing {
- public:
-  /// \param guide  noisy values by side. \param variance  of their lane means.
-  Smoothing(const Problem<N>& problem, const Neighbours& neighbours, const SideValues<N>& guide,
-            const std::vector<double>& variance);
-  /// \param weight  weights() of another one for the same sides.
-  Smoothing(const Problem<N>& problem, const Neighbours& neighbours, std::vector<float> weight)
-      : problem_(&problem), neighbours_(&neighbours), weight_(std::move(weight)) {}
-  [[nodiscard]] SideValues<N> operator()(const SideValues<N>& values) const;
-  [[nodiscard]] const std::vector<float>& weights() const { return weight_; }
-  /// Are there as many weights as neighbours?
-  [[nodiscard]] bool fits() const {
-    std::size_t count = 0;
-    for (const SideIndex i : problem_->sides.active)
-      neighbours_->visit(i, [&](SideIndex) { ++count; });
-    return weight_.size() == count;
-  }
-
- private:
-  const Problem<N>* problem_;
-  const Neighbours* neighbours_;
-  std::vector<float> weight_;  ///< in the order that Neighbours visits active sides
-};
 
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
 /// floor of 1 % of the mean. Only area outside closed bodies counts. Sides that no light reaches do not count: they would only make the
