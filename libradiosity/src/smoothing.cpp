@@ -58,7 +58,7 @@ Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
   };
   struct Said {
     double variance = 0.0;
-    double miss = 0.0;  ///< squared, less the noise in it; may be negative
+    double miss = 0.0;  ///< squared, with the noise in it
     int ends = 0;
   };
   std::vector<std::array<Said, 2>> said(problem.side_count());
@@ -74,7 +74,7 @@ Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
         d -= share * static_cast<double>(guide[j].mean());
         s.variance += share * share * variance[j];
       }
-      s.miss = d * d - s.variance - variance[i];
+      s.miss = d * d;
       s.ends = p.both ? 2 : 1;
     }
   }
@@ -91,7 +91,7 @@ Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
         sum += other.miss;
         count += 1.0;
       });
-      precision[axis] = 1.0 / (s.variance + std::max(0.0, sum / count));
+      precision[axis] = 1.0 / (s.variance + sum / count);
     }
     const double own = variance[i] > 0.0 ? 1.0 / variance[i] : 0.0;
     const double all = own + precision[0] + precision[1];
