@@ -11,8 +11,9 @@ using scene::Counters;
 template <int N>
 class SideLight {
  public:
-  SideLight(const Problem<N>& problem, DirectLights which)
+  SideLight(const Problem<N>& problem, Purpose purpose, DirectLights which)
       : problem_(problem),
+        purpose_(static_cast<std::uint64_t>(purpose)),
         which_(which),
         first_surface_(static_cast<std::uint32_t>(problem.shading.scene().lights.size())),
         sky_(scene::environment_source(problem.shading.scene())) {}
@@ -20,7 +21,7 @@ class SideLight {
   /// \return  false if the point lies inside a closed body; asked only where `mixed`.
   bool measure(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                Counters& counters, bool mixed) const {
-    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0xd17ec7U, replicate),
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, purpose_, replicate),
                            problem_.stream(i), index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
@@ -53,6 +54,7 @@ class SideLight {
 
  private:
   const Problem<N>& problem_;
+  std::uint64_t purpose_;
   DirectLights which_;
   std::uint32_t first_surface_, sky_;  ///< sources that are surfaces; the environment
 };
@@ -60,11 +62,11 @@ class SideLight {
 }  // namespace
 
 template <int N>
-bool sample_direct(const Problem<N>& problem, DirectLights which,
+bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
                    const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
-  const SideLight<N> light(problem, which);
+  const SideLight<N> light(problem, purpose, which);
   return draw_one_by_one(plan, tally, work, counters,
                       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                           Counters& c) {
@@ -90,13 +92,13 @@ template <int N>
 Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
                          Counters& counters) {
   Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-  sample_direct(problem, which, {}, top_up(problem, tally, problem.sides.active, samples), tally, work,
-                counters);
+  sample_direct(problem, Purpose::Count, which, {},
+                top_up(problem, tally, problem.sides.active, samples), tally, work, counters);
   return estimate_of(tally, problem);
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                              \
-  template bool sample_direct(const Problem<N>&, DirectLights,                             \
+  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                             \
                               const std::vector<std::uint8_t>&, const std::vector<Draw>&,  \
                               Tally<N>&, Work&, Counters&);                                \
   template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                    \

@@ -20,8 +20,10 @@ struct GroupLight {
   SideValues<N> bounced;        ///< exchange irradiance of the rows' solution, later a better one
   bool refined = false;         ///< is it better?
   SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
-  std::optional<Smoothing<N>> smoothing;  ///< by the noise of the rows
-  SideValues<N> seen;                     ///< bounced, smoothed: what fresh rays read
+  SideValues<N> seen;           ///< bounced, smoothed: what fresh rays read beside the source
+  SideValues<N> read;           ///< what the fresh rays so far have read, or as if they had
+  std::optional<Smoothing<N>> smoothing;       ///< that made `seen`
+  std::optional<Smoothing<N>> next_smoothing;  ///< that made `indirect`
 };
 
 /// Samples per replicate that a side has to get to; may be asked for any number of times.
@@ -136,7 +138,7 @@ class RowSolver {
     draw_direct(top_up(problem_, direct_, sides, samples));
   }
   void draw_direct(const std::vector<Draw>& plan) {
-    sample_direct(problem_, DirectLights::All, mixed_, plan, direct_, work_, counters_);
+    sample_direct(problem_, Purpose::Count, DirectLights::All, mixed_, plan, direct_, work_, counters_);
   }
   void draw_hot(const std::vector<Draw>& plan) {
     sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
@@ -144,11 +146,34 @@ class RowSolver {
 
   void draw_gather(const std::vector<Draw>& plan) {
     std::vector<SideValues<N>> field;
-    for (const GroupLight<N>& g : groups_) {
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      const GroupLight<N>& g = groups_[n];
       field.push_back(g.source);
       for (const SideIndex i : problem_.sides.active) field.back()[i] += g.seen[i];
+      bring_up_to_date(n, field.back());
     }
     sample_gather(problem_, field, hot_, plan, gathered_, work_, counters_);
+  }
+
+  /// The samples so far have read another field: the rows say what the difference makes. So no
+  /// sample is lost when the field gets better, and none keeps what was wrong with the older one.
+  void bring_up_to_date(std::size_t group, const SideValues<N>& field) {
+    GroupLight<N>& g = groups_[group];
+    if (!g.read.empty()) {
+      const SideValues<N> d = hot_.without_hot(minus(field, g.read));
+      SideValues<N> b(problem_.side_count());
+      for (const SideIndex i : problem_.sides.active)
+        b[i] = leaving(problem_.sides, i, d[i], d[i ^ 1U]);
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const SideIndex i = problem_.sides.active[k];
+        if (rows_.rays[k] == 0 || gathered_.valid(i) == 0) continue;
+        const float per_ray = 1.0f / static_cast<float>(rows_.rays[k]);
+        const Spectrum<N> plain = rows_.apply(k, b, false) * per_ray;
+        gathered_.shift(i, group, plain,
+                        problem_.sides.any_coupled ? rows_.apply(k, b, true) * per_ray : plain);
+      }
+    }
+    g.read = field;
   }
 
   /// A quarter of the rays against the rows' field, the rest against the one that these make of it:
@@ -163,9 +188,8 @@ class RowSolver {
         assemble();
         if (stop || paused(Stage::FirstGather)) return;
       }
-      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays, importance_);
-      if (rays >= kWorthwhile) refine_field(rest);
-      gather_goals_ = goals_of(rest, gathered_);
+      if (rays >= kWorthwhile) refine_field();
+      gather_goals_ = goals_of(top_up(problem_, gathered_, lit, rays, importance_), gathered_);
     }
     draw_gather(missing(gather_goals_, gathered_));
     (void)paused(Stage::Gather);
@@ -226,15 +250,22 @@ class RowSolver {
       a(*v);
     a(photons_.count);
     for (GroupLight<N>& g : groups_) {
-      for (auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot}) a(*v);
+      for (auto* v : {&g.source, &g.bounced, &g.seen, &g.read, &g.solved_source, &g.solved_shot}) a(*v);
       a(g.refined);
       std::vector<float> weights;
       if (g.smoothing) weights = g.smoothing->weights();
       a(weights);
-      if (!g.smoothing && !weights.empty())
-        g.smoothing.emplace(problem_, neighbours_, std::move(weights));
+      if (!g.smoothing && !weights.empty()) smoothing_from(std::move(weights), g);
     }
     archive_rows(a);
+  }
+
+  void smoothing_from(std::vector<float> weights, GroupLight<N>& g) const {
+    try {
+      g.smoothing.emplace(problem_, neighbours_, std::move(weights));
+    } catch (const std::invalid_argument&) {
+      // Not of these sides; consistent() finds it missing.
+    }
   }
 
   /// The rows, or how many rays each had: then they are traced again.
@@ -263,7 +294,8 @@ class RowSolver {
   [[nodiscard]] bool consistent() const {
     const std::size_t n = problem_.side_count();
     const bool body = problem_.sides.any_coupled;
-    bool ok = stage_ <= Stage::RoundGather && direct_.is_for(n, groups_.size(), body) &&
+    bool ok = stage_ <= Stage::RoundGather &&
+              direct_.is_for(n, groups_.size(), body) &&
               shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
               exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n;
     const auto in_range = [n](SideIndex i) { return i < n; };
@@ -278,7 +310,7 @@ class RowSolver {
     for (const GroupLight<N>& g : groups_) {
       for (const auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot})
         ok = ok && v->size() == n;
-      ok = ok && g.smoothing && g.smoothing->fits();
+      ok = ok && g.smoothing && (g.read.empty() || g.read.size() == n);
     }
     return ok && (rows_.rays.empty() || rows_.is_for(n, problem_.sides.active.size()));
   }
@@ -329,8 +361,7 @@ class RowSolver {
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
     take_direct();
-    if (!hot_chosen_) hot_ = HotPatches<N>(problem_, sources());
-    hot_chosen_ = true;
+    if (!hot_chosen_) choose_hot();
     know_hot_light();
     rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
                           counters_);
@@ -367,6 +398,28 @@ class RowSolver {
     const auto rows = static_cast<std::uint64_t>(std::count(wanted.begin(), wanted.end(), 1));
     return bytes_for_rows<N>(rows_.bytes(), rows * static_cast<std::uint64_t>(rays)) <=
            work_.memory().room(MemoryBudget::Part::Rows);
+  }
+
+  /// By samples of their own.
+  void choose_hot() {
+    constexpr int kFew = 8;
+    Tally<N> pilot(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
+    if (!sample_direct(problem_, Purpose::Decide, DirectLights::All, {},
+                       top_up(problem_, pilot, problem_.sides.active, kFew), pilot, work_,
+                       counters_)) {
+      (void)paused(Stage::Rows);
+      return;
+    }
+    std::vector<SideValues<N>> source;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      source.emplace_back(problem_.side_count());
+      for (const SideIndex i : problem_.sides.active)
+        source[g][i] =
+            (problem_.sides.coupled[i / 2] != 0 ? pilot.mean_body(i, g) : pilot.mean(i, g)) +
+            exchange(problem_, groups_[g].caustic, i);
+    }
+    hot_ = HotPatches<N>(problem_, std::move(source));
+    hot_chosen_ = true;
   }
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
@@ -482,7 +535,8 @@ class RowSolver {
         g.bounced.resize(problem_.side_count());
         const Iteration it = solve_rows(problem_, rows_, source, shot, g.bounced, work_);
         if (it.iterations >= slowest.iterations) slowest = it;
-        smooth(g, row_variances(g));
+        g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, row_variances(g));
+        g.seen = (*g.smoothing)(g.bounced);
       } else {
         SideValues<N> change(problem_.side_count());
         const Iteration it = solve_rows(problem_, rows_, minus(source, g.solved_source),
@@ -502,27 +556,15 @@ class RowSolver {
     iterations_before_assembly_ = slowest.iterations;
   }
 
-  void smooth(GroupLight<N>& g, const std::vector<double>& variance) const {
-    g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, variance);
-    g.seen = (*g.smoothing)(g.bounced);
-  }
-
-  /// What samples found is a better field than the rows' for the next samples to read. Where their
-  /// number doubles at least they are all drawn anew against it.
-  void refine_field(std::vector<Draw>& plan) {
+  /// What samples found is a better field than the rows' for the next samples to read.
+  void refine_field() {
     iterations_before_assembly_ = result_.iteration.iterations;
-    for (std::size_t n = 0; n < groups_.size(); ++n) {
-      GroupLight<N>& g = groups_[n];
+    for (GroupLight<N>& g : groups_) {
       for (const SideIndex i : problem_.sides.active)
         g.bounced[i] = exchange(problem_, g.indirect, i);
-      smooth(g, indirect_variances(n));
+      g.seen = g.bounced;
+      g.smoothing = g.next_smoothing;
       g.refined = true;
-    }
-    for (Draw& d : plan) {
-      const std::uint32_t have = gathered_.valid(d.side) / kReplicates;
-      if (d.more < have) continue;  // a few more go to what there is
-      d.more += have;
-      gathered_.drop_sums(d.side);
     }
   }
 
@@ -551,10 +593,10 @@ class RowSolver {
   void assemble() {
     iterations_before_assembly_ = result_.iteration.iterations;
     for (std::size_t g = 0; g < groups_.size(); ++g) pool(g);
-    sum_groups();
     estimate_variance();
     for (std::size_t g = 0; g < groups_.size(); ++g) propagate(g);
     sum_groups();
+    estimate_error();
   }
 
   void pool(std::size_t group) {
@@ -564,20 +606,18 @@ class RowSolver {
     for (std::size_t k = 0; k < rows_.size(); ++k) pool(k, group, b);
   }
 
-  [[nodiscard]] std::vector<double> indirect_variances(std::size_t group) const {
-    const std::vector<float>& v =
-        groups_.size() > 1 ? group_variances_[group].indirect : result_.indirect.variance;
-    return {v.begin(), v.end()};
-  }
-
   void propagate(std::size_t group) {
     GroupLight<N>& g = groups_[group];
     SideValues<N> difference(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       difference[i] = exchange(problem_, g.indirect, i);
-    const Smoothing<N> smoothing(problem_, neighbours_, difference, indirect_variances(group));
-    difference = smoothing(difference);
-    for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
+    g.next_smoothing =
+        Smoothing<N>(problem_, neighbours_, difference, group_variances_[group].own);
+    const Smoothing<N>& smoothing = *g.next_smoothing;
+    g.indirect.plain = smoothing(g.indirect.plain);
+    if (problem_.sides.any_coupled) g.indirect.body = smoothing(g.indirect.body);
+    for (const SideIndex i : problem_.sides.active)
+      difference[i] = exchange(problem_, g.indirect, i) - g.seen[i];
     const SideValues<N> none(problem_.side_count());
     SideValues<N> change(problem_.side_count());
     const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
@@ -634,8 +674,11 @@ class RowSolver {
     sum(&GroupLight<N>::indirect, result_.indirect);
   }
 
+  /// By side.
   struct Variances {
-    std::vector<float> direct, caustic, indirect;  ///< by side
+    std::vector<float> direct, caustic;
+    std::vector<double> own;     ///< of indirect light, by a side's own rays
+    std::vector<double> shared;  ///< of indirect light, by what neighbours see as well
   };
 
   /// Variances of the means of one group, or of the sum of all.
@@ -647,7 +690,8 @@ class RowSolver {
     const std::vector<double> fresh = of(gathered_);
     const std::vector<double> shot = of(shot_);
     const std::vector<float> none(problem_.side_count(), 0.0f);
-    Variances v{none, none, none};
+    const std::vector<double> nought(problem_.side_count(), 0.0);
+    Variances v{none, none, nought, nought};
     std::vector<double> total(problem_.side_count(), 0.0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
@@ -656,10 +700,13 @@ class RowSolver {
       v.direct[i] = static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
       v.caustic[i] = exposed * exposed * caustic_variance(i, group);
       const double shots = shot_.valid(i);
-      v.indirect[i] = static_cast<float>(indirect_variance(k, fresh[i], group) +
-                                         (shots > 0.0 ? shot[i] / shots : 0.0));
+      v.own[i] =
+          indirect_variance(k, fresh[i], group) + (shots > 0.0 ? shot[i] / shots : 0.0);
+      float seen = 0.0f;
+      for (std::size_t g = first_of(group); g < end_of(group); ++g)
+        seen = std::max(seen, groups_[g].smoothing->gain()[i]);
       total[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.caustic[i]) +
-                 static_cast<double>(v.indirect[i]);
+                 static_cast<double>(seen) * v.own[i];
     }
     const double common = hot_flux_variance(group);
     if (common > 0.0)
@@ -667,7 +714,7 @@ class RowSolver {
         double first = 0.0;
         for (std::size_t g = first_of(group); g < end_of(group); ++g)
           first += static_cast<double>(shot_.mean(i, g).mean());
-        v.indirect[i] += static_cast<float>(common * first * first);
+        v.shared[i] += common * first * first;
       }
     // The errors of what a side sees reach it too, as far as they do not average out.
     std::vector<double> leaving_variance(problem_.side_count(), 0.0);
@@ -677,8 +724,7 @@ class RowSolver {
       leaving_variance[i] = rho * rho * total[i] + tau * tau * total[i ^ 1U];
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      v.indirect[problem_.sides.active[k]] +=
-          static_cast<float>(rows_.apply_squared(k, leaving_variance));
+      v.shared[problem_.sides.active[k]] += rows_.apply_squared(k, leaving_variance);
     return v;
   }
   [[nodiscard]] static std::size_t first_of(GroupChoice group) { return group.value_or(0); }
@@ -687,19 +733,53 @@ class RowSolver {
   }
 
   void estimate_variance() {
-    Variances v = variances(kAllGroups);
-    result_.direct.variance = std::move(v.direct);
-    result_.caustic.variance = std::move(v.caustic);
-    result_.indirect.variance = std::move(v.indirect);
     group_variances_.clear();
-    for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
-      group_variances_.push_back(variances(g));
+    for (std::size_t g = 0; g < groups_.size(); ++g) group_variances_.push_back(variances(g));
+  }
+
+  /// Variance of the smoothed indirect light.
+  [[nodiscard]] static std::vector<float> smoothed(const Variances& v,
+                                                   const std::vector<float>& gain) {
+    std::vector<float> result(v.own.size());
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] = static_cast<float>(static_cast<double>(gain[i]) * v.own[i] + v.shared[i]);
+    return result;
+  }
+
+  void estimate_error() {
+    if (groups_.size() == 1) {
+      gain_ = groups_[0].next_smoothing->gain();
+    } else {
+      gain_.assign(problem_.side_count(), 1.0f);
+      for (const SideIndex i : problem_.sides.active) {
+        double all = 0.0;
+        double left = 0.0;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+          all += group_variances_[g].own[i];
+          left += group_variances_[g].own[i] *
+                  static_cast<double>(groups_[g].next_smoothing->gain()[i]);
+        }
+        if (all > 0.0) gain_[i] = static_cast<float>(left / all);
+      }
+    }
+    const Variances v = groups_.size() == 1 ? group_variances_[0] : variances(kAllGroups);
+    result_.indirect.variance = smoothed(v, gain_);
+    result_.direct.variance = v.direct;
+    result_.caustic.variance = v.caustic;
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    weights_ = error_weights(problem_, irradiance, importance_);
+    weights_ = error_weights(problem_, irradiance, counting_share());
     result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
                                        weighted(result_.caustic.variance) +
                                        weighted(result_.indirect.variance));
+  }
+
+  /// Share of a side's area that counts: what lies outside closed bodies, by importance.
+  [[nodiscard]] std::vector<float> counting_share() const {
+    std::vector<float> share = exposed_;
+    if (!importance_.empty())
+      for (const SideIndex i : problem_.sides.active) share[i] *= importance_[i];
+    return share;
   }
 
   /// Every group's part, for whoever dims the lights later.
@@ -710,7 +790,7 @@ class RowSolver {
       for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
       result_.groups.push_back({std::move(groups_[g].direct), std::move(groups_[g].caustic),
                                 std::move(groups_[g].indirect), std::move(v.direct),
-                                std::move(v.indirect)});
+                                smoothed(v, groups_[g].next_smoothing->gain())});
     }
   }
 
@@ -785,16 +865,22 @@ class RowSolver {
     const double fixed = weighted(result_.caustic.variance);
     const bool photons = fixed > 0.5 * target * target;
     if (photons && !more_photons()) return false;
+    const auto left = [&](const Tally<N>& tally) {
+      std::vector<double> variance =
+          sample_variance(problem_, neighbours_, tally, Samples::Neighbours);
+      for (const SideIndex i : problem_.sides.active)
+        variance[i] *= static_cast<double>(gain_[i]);
+      return variance;
+    };
     const std::vector<Stratum<N>> strata{
         {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
          kShadowRayCost},
-        {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours), 1.0},
-        {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
-         kShadowRayCost}};
+        {&gathered_, left(gathered_), 1.0},
+        {&shot_, left(shot_), kShadowRayCost}};
     auto plans =
-        plan_samples(problem_, weights_, strata, kMargin * target / result_.error_estimate);
+        plan_samples(problem_, weights_, exposed_, strata, kMargin * target / result_.error_estimate);
     if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
-    refine_field(plans[1]);
+    refine_field();
     direct_goals_ = goals_of(plans[0], direct_);
     gather_goals_ = goals_of(plans[1], gathered_);
     shot_goals_ = goals_of(plans[2], shot_);
@@ -854,7 +940,8 @@ class RowSolver {
   std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
   std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
   std::vector<double> weights_;  ///< of squared errors, by side
-  std::vector<Variances> group_variances_;  ///< if there are several groups
+  std::vector<Variances> group_variances_;
+  std::vector<float> gain_;  ///< by side: what smoothing leaves of the variance of its own rays
 
   Stage stage_ = Stage::Light;
   int round_ = 0;

@@ -76,13 +76,18 @@ class Tally {
         replicate_[at][r] += sums.groups[g].replicate[r];
     }
   }
+  /// As if every sample of a side so far had been larger by this.
+  void shift(SideIndex i, std::size_t group, const Spectrum<N>& plain, const Spectrum<N>& body) {
+    const std::size_t at = group * sides_ + i;
+    const auto n = static_cast<float>(valid(i));
+    plain_[at] += n * plain;
+    if (!body_.empty()) body_[at] += n * body;
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      replicate_[at][r] += static_cast<float>(valid_[i][r]) * plain.mean();
+  }
   /// Starts a side again, from the first sample on.
   void forget(SideIndex i) {
-    drop_sums(i);
     drawn_[i] = 0;
-  }
-  /// Drops what was added for a side; its next samples are new ones all the same.
-  void drop_sums(SideIndex i) {
     valid_[i].fill(0);
     for (std::size_t g = 0; g < groups_; ++g) {
       plain_[g * sides_ + i] = {};
