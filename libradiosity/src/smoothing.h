@@ -24,7 +24,7 @@ class Neighbours {
 
 /// A smoothing over every side and its neighbours that takes noise off a field and leaves what is
 /// more than noise: a neighbour counts less the more standard errors its value is away, so more
-/// samples mean less smoothing.
+/// samples mean less smoothing. The sum of area times value stays.
 template <int N>
 class Smoothing {
  public:
