@@ -244,14 +244,16 @@ void measure(const scene::RayQuery& query, const material::SpectralBasis& basis,
       {"trace_rows",
        [&] {
          Counters c;
-         const Rows<N> rows = trace_rows<N>(problem, {}, all, 0, per_side, work, c);
+         const Rows<N> rows = trace_rows<N>(problem, {}, {}, all, 0, per_side, work, c);
          hits += rows.entries.size();
          return static_cast<std::size_t>(c[Counter::RaysRow]);
        }},
       {"gather", [&] {
          Counters c;
-         const Gathered<N> g = gather(problem, field, work, c);
-         hits += g.rays.size();
+         Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
+         sample_gather<N>(problem, {field}, {}, top_up(problem, tally, active, per_side), tally, work,
+                          c);
+         hits += tally.valid(active.front());
          return static_cast<std::size_t>(c[Counter::RaysRow]);
        }}};
   print(cases, rounds);
@@ -282,7 +284,7 @@ void measure_parallel(const scene::RayQuery& query, int per_side, double size) {
   Counters counters;
   const auto trace = [&](bool wanted) {
     const std::vector<std::uint8_t> sides(problem.sides.active.size(), wanted ? 1 : 0);
-    return trace_rows<1>(problem, {}, sides, 0, per_side, work, counters).entries.size();
+    return trace_rows<1>(problem, {}, {}, sides, 0, per_side, work, counters).entries.size();
   };
   double wall[2] = {}, cpu[2] = {};
   for (const int threads : {1, 2}) {

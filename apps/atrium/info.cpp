@@ -114,6 +114,14 @@ void info_solution(const std::string& file, Report& r) {
   r.add("spectrum", s.basis);
   r.add("unit", s.field.unit);
   r.add("made with", s.options);
+  r.add("to go on from", static_cast<std::uint64_t>(s.state.size()), "bytes");
+  std::vector<std::string> groups;
+  for (const scene::GroupField& g : s.groups) {
+    char factor[32];
+    std::snprintf(factor, sizeof factor, "%.6g", g.factor);
+    groups.push_back(g.name + (g.factor == 1.0 ? "" : std::string(" x ") + factor));
+  }
+  r.list("light groups", groups);
 }
 
 void add_load_report(const scene::LoadReport& l, Report& r) {

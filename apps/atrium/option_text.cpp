@@ -61,6 +61,14 @@ double parse_length(const char* option, const std::string& text) {
   return (*n)[0] * unit;
 }
 
+std::pair<std::string, double> parse_factor(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const auto n = equals == std::string::npos ? std::nullopt : numbers<1>(text.substr(equals + 1), ' ');
+  if (!n || equals == 0 || !((*n)[0] >= 0.0))
+    throw Error("--set " + text + ": is not NAME=FACTOR with a factor of at least 0");
+  return {text.substr(0, equals), (*n)[0]};
+}
+
 std::vector<double> parse_wavelengths(const std::string& text) {
   constexpr double kMost = 10000.0;
   std::vector<double> list;

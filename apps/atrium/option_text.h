@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "options.h"
@@ -22,6 +23,8 @@ namespace atrium::app {
 [[nodiscard]] double parse_length(const char* option, const std::string& text);
 /// "550", "450,550,650" or FIRST:LAST:STEP in nm.
 [[nodiscard]] std::vector<double> parse_wavelengths(const std::string& text);
+/// NAME=FACTOR, a factor of at least 0.
+[[nodiscard]] std::pair<std::string, double> parse_factor(const std::string& text);
 
 /// A word as a shell would need it to be typed.
 [[nodiscard]] std::string shell_word(const std::string& word);

@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "scene/camera.h"
+#include "scene/light_groups.h"
 #include "trace/render.h"
 #include "trace/tone_map.h"
 
@@ -42,14 +44,26 @@ struct Effort {
 };
 [[nodiscard]] Effort effort_of(Quality quality);
 
+/// A picture that a solution is made for.
+struct PictureView {
+  scene::Camera camera;
+  double aspect = 4.0 / 3.0;
+  std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};
+};
+
 struct SolveSettings {
   SolverChoice solver = SolverChoice::Rows;
   Quality quality = Quality::Normal;
   double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
+  double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
   double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
   int probes = 0;              ///< points of the certificate
   bool paper_weights = false;  ///< --mode paper
+  scene::Grouping light_groups = scene::Grouping::One;
+  bool keep_state = false;  ///< a solution is written, from which a later run may go on
+  bool keep_rows = false;   ///< with the rows
+  std::vector<PictureView> views;  ///< all that will use the solution; empty: anything may
 };
 
 struct RenderCommand {
@@ -75,7 +89,15 @@ struct SolveCommand {
   CommonOptions common;
   SceneOptions scene;
   SolveSettings solve;
+  std::string solution;  ///< to go on from; may be empty
   std::vector<std::string> outputs;
+};
+
+/// `atrium reweight`.
+struct ReweightCommand {
+  std::string solution;
+  std::vector<std::pair<std::string, double>> factors;  ///< by group
+  std::string output;
 };
 
 /// A parallelogram cut into cells[0] x cells[1] cells.
@@ -156,8 +178,8 @@ struct Finished {
   int code = 0;
 };
 
-using Command = std::variant<Finished, RenderCommand, SolveCommand, MeasureCommand, InfoCommand,
-                             CompareCommand,
+using Command = std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, MeasureCommand,
+                             InfoCommand, CompareCommand,
                              MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
                              MaterialShowCommand, MaterialCompareCommand>;
 

@@ -23,6 +23,7 @@ struct Texts {
                                   quality = "normal", indirect = "auto", solver = "rows",
                                   mode = "radiometric", emissive_unit = "nit";
   bool no_pane_detection = false;
+  bool light_groups = false;
 };
 
 /// The same of `material derive`.
@@ -76,6 +77,10 @@ void add_solve(CLI::App& app, SolveSettings& o, Texts& t) {
       ->check(CLI::IsMember({"rows", "shooting", "matrix"}))
       ->capture_default_str();
   app.add_option("--time-limit", o.time_limit, "stop computing after this time [s]; 0: none")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  app.add_option("--memory-limit", o.memory_limit,
+                 "what the scene and its radiosity may hold [MB]; 0: no limit")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
@@ -147,7 +152,8 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
     const std::string why = "has no meaning with --method " +
                             std::string(o.method == trace::Method::Path ? "path" : "direct") +
                             ", which uses no radiosity";
-    for (const char* name : {"--solution", "--save-solution", "--solver", "--indirect"}) {
+    for (const char* name :
+         {"--solution", "--save-solution", "--solver", "--indirect", "--memory-limit"}) {
       refuse(name, why);
     }
   }
@@ -171,7 +177,8 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   }
   if (!o.solution.empty()) {
     refuse("--save-solution", "there is nothing new to save with --solution");
-    refuse("--solver", "nothing is solved with --solution");
+    for (const char* name : {"--solver", "--memory-limit"})
+      refuse(name, "nothing is solved with --solution");
   }
 }
 
@@ -216,7 +223,7 @@ MeasureCommand finish(MeasureCommand o, const std::vector<std::string>& grid, co
   if (o.work_plane && !std::isfinite(*o.work_plane))
     throw Error("--workplane: must be a height in metres");
   if (!o.solution.empty())
-    for (const char* name : {"--solver", "--quality", "--time-limit"})
+    for (const char* name : {"--solver", "--quality", "--time-limit", "--memory-limit"})
       if (app.count(name) > 0)
         throw Error(std::string(name) + ": nothing is solved with --solution");
   return o;
@@ -346,6 +353,8 @@ struct Parser {
   CLI::App app{"Atrium: light in buildings by radiosity and ray tracing", "atrium"};
   RenderCommand render;
   SolveCommand solve;
+  ReweightCommand reweight;
+  std::vector<std::string> reweight_factors;
   MeasureCommand measure;
   std::vector<std::string> measure_grid;
   InfoCommand info;
@@ -364,6 +373,8 @@ struct Parser {
     app.fallthrough();
     add_render(*app.add_subcommand("render", "render a picture of a scene"), render, render_texts);
     add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
+    add_reweight_command(
+        *app.add_subcommand("reweight", "dim the light groups of a solution, without a ray"));
     add_measure_command(
         *app.add_subcommand("measure", "illuminance or irradiance at points and on grids"));
     add_info_command(*app.add_subcommand("info", "what a file contains, needs and goes without"));
@@ -380,6 +391,14 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     add_solve(sub, solve.solve, solve_texts);
+    sub.add_option("--solution", solve.solution,
+                   "go on from this solution: interrupted, or of other diffuse reflectances")
+        ->type_name("FILE.atrium");
+    sub.add_flag("--keep-rows", solve.solve.keep_rows,
+                 "store the rows in .atrium too: larger, but later runs need not trace them again");
+    sub.add_flag("--light-groups", solve_texts.light_groups,
+                 "keep the light of each lamp name apart, for reweight; default: of each "
+                 "light_group that the scene names");
     sub.add_option("--error", solve.solve.error,
                    "go on until the RMS of irradiance is below this share of it (0.02: 2 %); 0: "
                    "the effort of --quality. Solver rows only")
@@ -387,6 +406,18 @@ struct Parser {
         ->capture_default_str();
     add_mode(sub, solve_texts);
     add_common(sub, solve.common);
+  }
+  void add_reweight_command(CLI::App& sub) {
+    sub.add_option("solution", reweight.solution, "of atrium solve, with light groups")
+        ->required()
+        ->type_name("FILE.atrium");
+    sub.add_option("--set", reweight_factors,
+                   "factor of a group's light as it was solved, may be repeated; others stay")
+        ->required()
+        ->type_name("NAME=FACTOR");
+    sub.add_option("-o,--output", reweight.output, "dimmed solution")
+        ->required()
+        ->type_name("FILE.atrium");
   }
   void add_measure_command(CLI::App& sub) {
     MeasureCommand& o = measure;
@@ -476,8 +507,19 @@ Command finished_command(Parser& p, const std::string& command_line) {
   if (name == "solve") {
     finish(p.solve.scene, p.solve_texts);
     finish(p.solve.solve, p.solve_texts);
+    p.solve.solve.light_groups =
+        p.solve_texts.light_groups                      ? scene::Grouping::ByName
+        : p.solve.solve.solver == SolverChoice::Rows ? scene::Grouping::Declared
+                                                     : scene::Grouping::One;
+    if (!p.solve.solution.empty() && p.solve.solve.solver != SolverChoice::Rows)
+      throw Error("--solution: only --solver rows can go on from a solution");
     p.solve.common.command_line = command_line;
     return p.solve;
+  }
+  if (name == "reweight") {
+    ReweightCommand o = p.reweight;
+    for (const std::string& text : p.reweight_factors) o.factors.push_back(parse_factor(text));
+    return o;
   }
   if (name == "measure") {
     finish(p.measure.scene, p.measure_texts);

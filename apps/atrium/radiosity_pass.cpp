@@ -48,9 +48,15 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.direct_samples = effort.direct_samples;
   o.caustic_photons = effort.caustic_photons;
   o.seed = settings.seed;
+  if (settings.keep_state)
+    o.keep = settings.keep_rows ? radiosity::Keep::Rows : radiosity::Keep::Samples;
+  o.light_groups = settings.light_groups;
   o.paper_weights = settings.paper_weights;
   o.time_limit = time_limit;
+  o.memory_limit = static_cast<std::uint64_t>(1e6 * settings.memory_limit);
   o.error = settings.error;
+  if (settings.solver == SolverChoice::Rows)
+    for (const PictureView& v : settings.views) o.views.push_back({v.camera, v.aspect, v.crop});
   o.probes = settings.probes;
   return o;
 }
@@ -86,6 +92,10 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.escaped = r.flux.escaped;
   s.in_medium = r.flux.in_medium;
   s.flux_error = r.flux.standard_error;
+  s.memory = {{"scene", r.memory.scene},     {"bvh", r.memory.bvh},
+              {"elements", r.memory.elements}, {"samples", r.memory.samples},
+              {"photons", r.memory.photons}, {"rows", r.memory.rows},
+              {"fields", r.memory.fields},   {"peak", r.memory.peak}};
   s.counters = r.counters;
   return s;
 }
@@ -95,18 +105,29 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
 bool radiosity_available() { return true; }
 
 RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
-                           const SolveSettings& settings, double time_limit, bool want_mesh) {
+                           const SolveSettings& settings, double time_limit, bool want_mesh,
+                           const scene::Solution* previous) {
+  const radiosity::SolveOptions options = solve_options(settings, time_limit);
+  const scene::Control control = session.control("radiosity");
   radiosity::SolveResult result =
-      radiosity::solve(*loaded.query, loaded.basis, solve_options(settings, time_limit),
-                       session.control("radiosity"));
+      previous == nullptr
+          ? radiosity::solve(*loaded.query, loaded.basis, options, control)
+          : radiosity::solve(*loaded.query, loaded.basis, options, control,
+                             radiosity::Previous{previous->field, previous->state});
   RadiosityRun run;
   run.summary = summarise(result);
+  run.summary.views = static_cast<int>(options.views.size());
+  if (settings.error > 0.0) run.summary.error_target = settings.error;
+  for (const std::string& what : result.given_up)
+    session.progress.warning("memory limit: " + what);
   if (settings.probes > 0) run.summary.certificate = summarise(result.certificate);
   if (want_mesh) {
     run.mesh =
         radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);
   }
   run.field = std::move(result.field);
+  run.groups = std::move(result.groups);
+  run.state = std::move(result.state);
   session.clock.leave();
   session.detail("radiosity: " + std::to_string(run.summary.elements) + " elements, " +
                  std::to_string(run.summary.iterations) + " iterations, stopped by " +
@@ -118,7 +139,8 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
 
 bool radiosity_available() { return false; }
 
-RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool) {
+RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool,
+                           const scene::Solution*) {
   throw RuntimeFailure("radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
 }
 

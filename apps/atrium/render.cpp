@@ -134,6 +134,8 @@ void save_solution(Session& session, const RenderCommand& c, const LoadedScene& 
   }
   session.clock.enter("write");
   scene::write_solution({.field = field,
+                         .groups = {},
+                         .state = {},
                          .scene_hash = scene::hash_scene(*loaded.scene),
                          .basis = describe_lanes(loaded, c.solve),
                          .options = describe(c.solve)},
@@ -195,6 +197,17 @@ struct Pack {
   scene::SurfaceField field;
 };
 
+/// A solution for these pictures alone may leave out what they do not show.
+std::vector<PictureView> views_of(const RenderCommand& c, const std::vector<ViewJob>& jobs) {
+  std::vector<PictureView> views;
+  if (!c.save_solution.empty()) return views;
+  for (const ViewJob& job : jobs) {
+    const auto [width, height] = size_for(c, job.camera);
+    views.push_back({job.camera, static_cast<double>(width) / height, c.crop});
+  }
+  return views;
+}
+
 std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedScene& loaded,
                               Statistics& statistics) {
   const material::SpectralBasis whole = loaded.basis;
@@ -235,6 +248,9 @@ void render_view(Session& session, const RenderCommand& c, const LoadedScene& lo
   statistics.counters += result.counters;
   session.clock.enter("write");
   add_metadata(result.image, c, loaded, result);
+  if (statistics.solve)
+    result.image.metadata["atrium:radiosity"] =
+        statistics.solve->views > 0 ? "for the views of this run" : "of every surface";
   ViewSummary view{.camera = job.label,
                    .width = result.image.width,
                    .height = result.image.height,
@@ -288,7 +304,9 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
       session, c.scene, {.camera = c.camera, .follow_view = own_mesh, .show_warnings = true});
   if (session.interrupted()) return kInterrupted;
   const std::vector<ViewJob> jobs = view_jobs(session, c, loaded);
-  const std::vector<Pack> packs = solve_packs(session, c, loaded, statistics);
+  RenderCommand with_views = c;
+  with_views.solve.views = views_of(c, jobs);
+  const std::vector<Pack> packs = solve_packs(session, with_views, loaded, statistics);
   save_solution(session, c, loaded, packs.front().field);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (i > 0 && session.interrupted()) break;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "commands.h"
 #include "material/error.h"
@@ -43,7 +45,16 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   if (!radiosity_needed(loaded.features, why)) throw Error("solve: nothing to solve: " + why);
 
   const bool want_mesh = !std::all_of(c.outputs.begin(), c.outputs.end(), is_solution);
-  RadiosityRun run = run_radiosity(session, loaded, c.solve, c.solve.time_limit, want_mesh);
+  SolveSettings settings = c.solve;
+  settings.keep_state = std::any_of(c.outputs.begin(), c.outputs.end(), is_solution);
+  std::optional<scene::Solution> previous;
+  if (!c.solution.empty()) {
+    previous = scene::read_solution(c.solution);
+    if (previous->state.empty())
+      throw Error(c.solution + ": keeps nothing to go on from (stopped too early, or not by solve)");
+  }
+  RadiosityRun run = run_radiosity(session, loaded, settings, c.solve.time_limit, want_mesh,
+                                   previous ? &*previous : nullptr);
 
   if (c.solve.error > 0.0 && run.summary.stopped_by != "error")
     session.progress.warning("the error of " + std::to_string(100.0 * c.solve.error) +
@@ -63,6 +74,8 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   for (const std::string& file : c.outputs) {
     if (is_solution(file)) {
       scene::write_solution({.field = run.field,
+                             .groups = run.groups,
+                             .state = run.state,
                              .scene_hash = scene::hash_scene(*loaded.scene),
                              .basis = describe_lanes(loaded, c.solve),
                              .options = describe(c.solve)},

@@ -113,26 +113,37 @@ void add_certificate(JsonWriter& json, const ProbeSummary& c) {
   json.member("verdict", c.verdict);
 }
 
-/// The error of the picture if there is one, of the radiosity otherwise.
-void add_error(JsonWriter& json, const Statistics& s) {
+/// What is said of the irradiance. Target: what was asked for, or what probes judge by.
+void add_irradiance_error(JsonWriter& json, const SolveSummary& s) {
   json.begin_object("error");
-  const ProbeSummary* c = s.solve && s.solve->certificate ? &*s.solve->certificate : nullptr;
-  if (c != nullptr)
-    json.member("target", c->target);
+  const std::optional<double> target =
+      s.certificate ? std::optional(s.certificate->target) : s.error_target;
+  if (target)
+    json.member("target", *target);
   else
     json.null("target");
-  if (!s.views.empty()) {
-    json.member("estimate", s.views.back().error_estimate);
-  } else if (s.solve) {
-    json.member("estimate", s.solve->error_estimate);
-  } else {
-    json.null("estimate");
-  }
-  if (s.solve) json.member("mesh", s.solve->mesh_error);
-  if (c != nullptr)
-    add_certificate(json, *c);
+  json.member("estimate", s.error_estimate);
+  json.member("mesh", s.mesh_error);
+  if (s.certificate)
+    add_certificate(json, *s.certificate);
   else
     json.null("ci");
+  json.end();
+}
+
+/// The error of the picture if there is one, of the radiosity otherwise.
+void add_error(JsonWriter& json, const Statistics& s) {
+  if (s.views.empty() && s.solve) {
+    add_irradiance_error(json, *s.solve);
+    return;
+  }
+  json.begin_object("error");
+  json.null("target");
+  if (s.views.empty())
+    json.null("estimate");
+  else
+    json.member("estimate", s.views.back().error_estimate);
+  json.null("ci");
   json.end();
 }
 
@@ -142,9 +153,11 @@ void add_solve(JsonWriter& json, const Statistics& s) {
   if (!s.radiosity_skipped.empty()) json.member("skipped", s.radiosity_skipped);
   if (s.solve) {
     json.member("elements", static_cast<std::uint64_t>(s.solve->elements));
+    json.member("effort", s.solve->views == 0 ? "everywhere" : "views");
     json.member("iterations", s.solve->iterations);
     json.member("residual", s.solve->residual);
     json.member("error_estimate", s.solve->error_estimate);
+    if (!s.views.empty()) add_irradiance_error(json, *s.solve);
     json.member("complete", s.solve->complete);
     json.member("stopped_by", s.solve->stopped_by);
     json.begin_object("flux");
@@ -153,6 +166,9 @@ void add_solve(JsonWriter& json, const Statistics& s) {
     json.member("escaped", s.solve->escaped);
     json.member("in_medium", s.solve->in_medium);
     json.member("standard_error", s.solve->flux_error);
+    json.end();
+    json.begin_object("memory");
+    for (const auto& [part, bytes] : s.solve->memory) json.member(part, bytes);
     json.end();
   }
   json.end();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/json.h"
@@ -29,12 +30,15 @@ struct SolveSummary {
   std::size_t elements = 0;
   int iterations = 0;
   double residual = 0.0;
+  int views = 0;  ///< that the effort followed; 0: every surface matters
+  std::optional<double> error_target;  ///< that was asked for
   double error_estimate = 0.0;
   double mesh_error = 0.0;
   std::optional<ProbeSummary> certificate;
   bool complete = true;
   std::string stopped_by;
   double emitted = 0.0, absorbed = 0.0, escaped = 0.0, in_medium = 0.0, flux_error = 0.0;
+  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< counted bytes by part
   scene::Counters counters;
 };
 

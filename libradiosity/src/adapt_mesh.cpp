@@ -7,7 +7,10 @@
 namespace atrium::radiosity {
 namespace {
 
+using scene::SurfaceField;
+
 constexpr int kPilot = 16;  ///< light samples per side while elements are being divided
+constexpr std::uint64_t kSeed = 0x3e5bU;  // samples of its own, see adapt_mesh()
 
 Vec3f centre_of(const Elements& elements, std::uint32_t e) {
   Vec3d sum = Vec3d::Zero();
@@ -23,7 +26,8 @@ Vec3f centre_of(const Elements& elements, std::uint32_t e) {
       area += w;
     }
   }
-  return area > 0.0 ? Vec3f((sum / area).cast<float>()) : elements.pieces[elements.first_piece[e]].corners[0];
+  return area > 0.0 ? Vec3f((sum / area).cast<float>())
+                    : elements.pieces[elements.first_piece[e]].corners[0];
 }
 
 double asked_mesh_error(const SolveOptions& o) {
@@ -34,16 +38,23 @@ double asked_mesh_error(const SolveOptions& o) {
 /// Direct irradiance (lane mean) of every side, and the variance of each value.
 struct Light {
   std::vector<float> value, variance;
+  std::vector<std::uint8_t> known;
 };
 
 template <int N>
 Light light_of(const Problem<N>& problem, const Tally<N>& tally) {
   Light light{std::vector<float>(problem.side_count(), 0.0f),
-              std::vector<float>(problem.side_count(), 0.0f)};
+              std::vector<float>(problem.side_count(), 0.0f), problem.sides.is_active};
   for (const SideIndex i : problem.sides.active) {
     for (std::size_t g = 0; g < tally.groups(); ++g) light.value[i] += tally.mean(i, g).mean();
     light.variance[i] = static_cast<float>(tally.variance(i));
   }
+  for (SideIndex i = 0; i < problem.side_count(); ++i)
+    if (const SideIndex cover = problem.sides.cover[i]; cover != kNoSide) {
+      light.value[i] = light.value[cover];
+      light.variance[i] = light.variance[cover];
+      light.known[i] = 1;
+    }
   return light;
 }
 
@@ -76,6 +87,7 @@ double squared_miss(const std::vector<EdgeNeighbours>& neighbours, const Light& 
       const std::uint32_t n = neighbours[i / 2][static_cast<std::size_t>(2 * edge + k)];
       if (n == scene::SurfaceField::kNone) continue;
       const SideIndex j = side_index(n, side_of(i));
+      if (light.known[j] == 0) continue;
       value += static_cast<double>(light.value[j]);
       variance += static_cast<double>(light.variance[j]);
       count += 1.0;
@@ -104,13 +116,18 @@ double squared_miss(const std::vector<EdgeNeighbours>& neighbours, const Light& 
 template <int N>
 class MeshAdapter {
  public:
-  MeshAdapter(const scene::Shading<N>& shading, Elements elements, const SolveOptions& options,
-              Work& work, scene::Counters& counters)
-      : shading_(shading), options_(options), work_(work), counters_(counters) {
+  MeshAdapter(const scene::Shading<N>& shading, const Surroundings& surroundings, Elements elements,
+              const SolveOptions& options, Work& work, scene::Counters& counters)
+      : shading_(shading),
+        surroundings_(surroundings),
+        options_(options),
+        work_(work),
+        counters_(counters) {
+    options_.seed ^= kSeed;
     mesh_.elements = std::move(elements);
   }
 
-  AdaptedMesh<N> adapt() {
+  AdaptedMesh adapt() {
     measure_all();
     while (!work_.stopped()) {
       const std::vector<std::uint8_t> split = choose();
@@ -121,17 +138,26 @@ class MeshAdapter {
   }
 
  private:
+  /// \param beside  bytes of what is being replaced.
+  void count_memory(std::uint64_t elements_beside, std::uint64_t samples_beside) {
+    work_.memory().hold(MemoryBudget::Part::Elements,
+                        bytes_of(mesh_.elements) + problem_->bytes() + elements_beside);
+    work_.memory().hold(MemoryBudget::Part::Samples, direct_.bytes() + samples_beside);
+  }
+
   void measure_all() {
-    problem_ = std::make_unique<Problem<N>>(shading_, mesh_.elements, options_);
-    mesh_.direct =
+    problem_ = std::make_unique<Problem<N>>(shading_, surroundings_, mesh_.elements, options_);
+    direct_ =
         Tally<N>(problem_->side_count(), problem_->group_count(), problem_->sides.any_coupled);
-    sample_direct(*problem_, DirectLights::All, {}, top_up(*problem_, mesh_.direct, problem_->sides.active, kPilot),
-                  mesh_.direct, work_, counters_);
+    sample_direct(*problem_, Purpose::Decide, DirectLights::All, {},
+                  top_up(*problem_, direct_, problem_->sides.active, kPilot), direct_, work_,
+                  counters_);
+    count_memory(0, 0);
   }
 
   /// Marks the elements that have to be divided; empty if none.
   std::vector<std::uint8_t> choose() {
-    const Light light = light_of(*problem_, mesh_.direct);
+    const Light light = light_of(*problem_, direct_);
     const std::vector<EdgeNeighbours> neighbours = edge_neighbours(mesh_.elements.layout);
     const std::size_t count = mesh_.elements.layout.element_count();
     std::vector<double> contribution(count, 0.0);
@@ -161,7 +187,23 @@ class MeshAdapter {
       room -= 3;
       total -= 0.75 * contribution[e];  // across an edge of light half the width is left
     }
-    return any ? split : std::vector<std::uint8_t>();
+    if (!any) return {};
+    split_covered(split, room);
+    return split;
+  }
+
+  /// Elements under a cover that is divided, down to its size: they show its light.
+  void split_covered(std::vector<std::uint8_t>& split, std::size_t room) const {
+    const SurfaceField& layout = mesh_.elements.layout;
+    for (std::uint32_t e = 0; e < split.size() && room >= 3; ++e) {
+      SideIndex cover = problem_->sides.cover[2 * e];
+      if (cover == kNoSide) cover = problem_->sides.cover[2 * e + 1];
+      if (cover == kNoSide || split[e] != 0 || split[cover / 2] == 0) continue;
+      if (layout.element_size(e) < 0.75f * layout.element_size(cover / 2)) continue;
+      if (!splittable(mesh_.elements, e)) continue;
+      split[e] = 1;
+      room -= 3;
+    }
   }
 
   std::vector<double> weights(const Light& light) const {
@@ -173,25 +215,35 @@ class MeshAdapter {
   }
 
   void divide(const std::vector<std::uint8_t>& split) {
-    const Light before = light_of(*problem_, mesh_.direct);
+    const Light before = light_of(*problem_, direct_);
     Elements old = std::move(mesh_.elements);
     Refined refined = refine(shading_.scene(), old, split);
     mesh_.elements = std::move(refined.elements);
-    auto next = std::make_unique<Problem<N>>(shading_, mesh_.elements, options_);
+    auto next = std::make_unique<Problem<N>>(shading_, surroundings_, mesh_.elements, options_);
     Tally<N> tally(next->side_count(), next->group_count(), next->sides.any_coupled);
-    std::vector<SideIndex> fresh;
+    std::vector<SideIndex> fresh, unknown;  // of parts; of wholes that no cover counts any more
     for (const SideIndex i : next->sides.active) {
       const std::uint32_t parent = refined.parent[i / 2];
       if (mesh_.elements.layout.element_level[i / 2] == old.layout.element_level[parent]) {
-        tally.copy(i, mesh_.direct, side_index(parent, side_of(i)));
+        const SideIndex same = side_index(parent, side_of(i));
+        if (problem_->sides.is_active[same] != 0)
+          tally.copy(i, direct_, same);
+        else
+          unknown.push_back(i);
         continue;
       }
       fresh.push_back(i);
     }
-    sample_direct(*next, DirectLights::All, {}, top_up(*next, tally, fresh, kPilot), tally, work_, counters_);
-    old.layout.valid = problem_->sides.is_active;
+    for (const auto& sides : {fresh, unknown})
+      sample_direct(*next, Purpose::Decide, DirectLights::All, {}, top_up(*next, tally, sides, kPilot), tally, work_,
+                    counters_);
+    old.layout.valid = before.known;
+    const std::uint64_t old_elements = bytes_of(old) + problem_->bytes();
+    const std::uint64_t old_samples = direct_.bytes();
     problem_ = std::move(next);
-    mesh_.direct = std::move(tally);
+    direct_ = std::move(tally);
+    count_memory(old_elements, old_samples);
+    count_memory(bytes_of(old), 0);
     calibrate(old, before, fresh, refined.parent);
   }
 
@@ -199,7 +251,7 @@ class MeshAdapter {
   /// squared miss holds for the elements that were not divided.
   void calibrate(const Elements& old, const Light& before, const std::vector<SideIndex>& fresh,
                  const std::vector<std::uint32_t>& parent) {
-    const Light light = light_of(*problem_, mesh_.direct);
+    const Light light = light_of(*problem_, direct_);
     const std::vector<double> weight = weights(light);
     const std::vector<EdgeNeighbours> neighbours = edge_neighbours(old.layout);
     double measured = 0.0;
@@ -219,17 +271,19 @@ class MeshAdapter {
       }
       const double miss = std::pow(static_cast<double>(light.value[i]) - value, 2) - variance;
       measured += weight[i] * miss;
-      expected += weight[i] *
-                  squared_miss(neighbours, before, side_index(parent[i / 2], side_of(i)));
+      expected +=
+          weight[i] * squared_miss(neighbours, before, side_index(parent[i / 2], side_of(i)));
     }
     if (expected > 0.0) calibration_ = std::clamp(measured / expected, 0.1, 10.0);
   }
 
   const scene::Shading<N>& shading_;
-  const SolveOptions& options_;
+  const Surroundings& surroundings_;
+  SolveOptions options_;
   Work& work_;
   scene::Counters& counters_;
-  AdaptedMesh<N> mesh_;
+  AdaptedMesh mesh_;
+  Tally<N> direct_;
   std::unique_ptr<Problem<N>> problem_;
   double calibration_ = 1.0;
 };
@@ -237,14 +291,16 @@ class MeshAdapter {
 }  // namespace
 
 template <int N>
-AdaptedMesh<N> adapt_mesh(const scene::Shading<N>& shading, Elements elements,
-                          const SolveOptions& options, Work& work, scene::Counters& counters) {
-  return MeshAdapter<N>(shading, std::move(elements), options, work, counters).adapt();
+AdaptedMesh adapt_mesh(const scene::Shading<N>& shading, const Surroundings& surroundings,
+                       Elements elements, const SolveOptions& options, Work& work,
+                       scene::Counters& counters) {
+  return MeshAdapter<N>(shading, surroundings, std::move(elements), options, work, counters)
+      .adapt();
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                    \
-  template AdaptedMesh<N> adapt_mesh(const scene::Shading<N>&, Elements, const SolveOptions&,    \
-                                     Work&, scene::Counters&);
+#define ATRIUM_INSTANTIATE(N)                                                              \
+  template AdaptedMesh adapt_mesh(const scene::Shading<N>&, const Surroundings&, Elements, \
+                                  const SolveOptions&, Work&, scene::Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -5,25 +5,26 @@
 
 namespace atrium::radiosity {
 
-/// Elements whose size follows the direct light, with what was measured on the way.
-template <int N>
+/// Elements whose size follows the direct light.
 struct AdaptedMesh {
   Elements elements;
-  Tally<N> direct;     ///< light samples of every side
   double error = 0.0;  ///< RMS of interpolation against measurement over the area, estimated
 };
 
 /// Divides elements where interpolation between them misses direct light, largest contributions to
 /// the squared error first, and measures the parts, until what is left is below
 /// SolveOptions::mesh_error or no element may be divided further. The decision about an element is
-/// made from its neighbours' samples and its own; the parts are measured afresh.
+/// made from its neighbours' samples and its own; the parts are measured afresh. These samples are
+/// not the solution's: an element whose samples are off is more likely to be divided, so of those
+/// that are kept the mean is biased.
 ///
 /// How far interpolation is off is known where elements were divided (what their parts measured
 /// against what the whole's level said there); that scales the estimate for the rest, which is
 /// from second differences.
 template <int N>
-[[nodiscard]] AdaptedMesh<N> adapt_mesh(const scene::Shading<N>& shading, Elements elements,
-                                        const SolveOptions& options, Work& work,
-                                        scene::Counters& counters);
+[[nodiscard]] AdaptedMesh adapt_mesh(const scene::Shading<N>& shading,
+                                     const Surroundings& surroundings, Elements elements,
+                                     const SolveOptions& options, Work& work,
+                                     scene::Counters& counters);
 
 }  // namespace atrium::radiosity

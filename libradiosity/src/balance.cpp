@@ -4,6 +4,8 @@
 namespace atrium::radiosity {
 namespace {
 
+using scene::Counters;
+
 /// Summed weight of a row, lane mean.
 template <int N>
 double row_sum(const Rows<N>& rows, std::size_t k) {
@@ -51,10 +53,25 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
 }
 
 template <int N>
+std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work, Counters& counters) {
+  constexpr int kRays = 256;
+  const std::size_t n = problem.sides.active.size();
+  const Rows<N> rows = trace_rows<N>(problem, {}, {}, std::vector<std::uint8_t>(n, 1), 0, kRays,
+                                     work, counters);
+  std::vector<Beyond> all(n);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double escaped = static_cast<double>(rows.escaped[k]);
+    const double in_medium = static_cast<double>(rows.in_medium[k]);
+    double absorbed = rows.rays[k] - row_sum(rows, k) - escaped - in_medium;
+    if (!(absorbed > 0.5)) absorbed = 0.0;  // of rounding: less than one ray
+    const double sum = escaped + in_medium + absorbed;
+    if (sum > 0.0) all[k] = {escaped / sum, absorbed / sum, in_medium / sum};
+  }
+  return all;
+}
+
+template <int N>
 void require_diffuse(const Problem<N>& problem, const char* solver) {
-  if (problem.shading.has_medium())
-    throw Error(std::string("radiosity: solver '") + solver +
-                "' knows no air that absorbs (medium); use solver 'rows'");
   if (problem.specular)
     throw Error(std::string("radiosity: solver '") + solver +
                 "' is for diffuse surfaces only and this scene has mirrors, glass or glossy "
@@ -64,6 +81,7 @@ void require_diffuse(const Problem<N>& problem, const char* solver) {
 #define ATRIUM_INSTANTIATE(N)                                                                 \
   template FluxBalance flux_balance(const Problem<N>&, const Solution<N>&, const Photons<N>&, \
                                     const Rows<N>&);                                          \
+  template std::vector<Beyond> beyond_sides(const Problem<N>&, Work&, Counters&);             \
   template void require_diffuse(const Problem<N>&, const char*);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

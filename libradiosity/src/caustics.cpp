@@ -38,7 +38,9 @@ class PhotonTracer {
         problem_, {e->origin, e->direction}, e->weight, sampler, material::Transport::Flux,
         Counter::RaysPhoton, counters, [&](const Landing<N>& at, const Spectrum<N>& flux) {
           left -= static_cast<double>(flux.mean());
-          if (at.specular) batch.deposits.push_back({at.side, 0, flux, flux * at.body_weight()});
+          if (at.specular)
+            batch.deposits.push_back(
+                {at.side, problem_.group_of(e->source), flux, flux * at.body_weight()});
         });
     const double escaped = static_cast<double>(end.escaped.mean());
     batch.escaped += escaped;
@@ -71,14 +73,24 @@ void add_deposits(const Problem<N>& problem, const Batch<N>& batch, double photo
 }  // namespace
 
 template <int N>
+std::uint64_t photons_that_fit(const MemoryBudget& memory, std::uint64_t wanted) {
+  // Every photon is deposited once or twice; a growing array has up to twice its size.
+  constexpr std::uint64_t kEach = 4 * sizeof(Deposit<N>);
+  constexpr std::uint64_t kFewest = 1024, kMost = 0xffffffffU;
+  return std::min({wanted, kMost,
+                   std::max(kFewest, memory.room(MemoryBudget::Part::Photons) / kEach)});
+}
+
+template <int N>
 Photons<N> trace_photons(const Problem<N>& problem, Work& work, Counters& counters) {
   // Without specular surfaces only the flux balance needs some.
   constexpr std::uint64_t kBalancePhotons = 32768;
-  return trace_photons(problem,
-                       problem.specular
-                           ? std::max(kBalancePhotons, problem.options.caustic_photons)
-                           : kBalancePhotons,
-                       work, counters);
+  if (!problem.specular) return trace_photons(problem, kBalancePhotons, work, counters);
+  const std::uint64_t wanted = std::max(kBalancePhotons, problem.options.caustic_photons);
+  const std::uint64_t fit = photons_that_fit<N>(work.memory(), wanted);
+  if (fit < wanted)
+    work.memory().give_up(std::to_string(fit) + " photons instead of " + std::to_string(wanted));
+  return trace_photons(problem, fit, work, counters);
 }
 
 template <int N>
@@ -102,6 +114,10 @@ Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& w
   for (std::size_t b = 0; b < batches.size(); ++b)
     if (done[b] != 0) photons += std::min<std::uint64_t>(kGrain, wanted - b * kGrain);
   result.count = photons;
+  std::uint64_t deposits = 0;
+  for (const Batch<N>& batch : batches) deposits += bytes_of(batch.deposits);
+  work.memory().hold(MemoryBudget::Part::Photons, deposits);
+  work.memory().hold(MemoryBudget::Part::Photons, 0);
   if (photons == 0) return result;
   const double n = static_cast<double>(photons);
   double squares = 0.0;
@@ -123,6 +139,7 @@ Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& w
 }
 
 #define ATRIUM_INSTANTIATE(N) \
+  template std::uint64_t photons_that_fit<N>(const MemoryBudget&, std::uint64_t);        \
   template Photons<N> trace_photons(const Problem<N>&, Work&, Counters&);                \
   template Photons<N> trace_photons(const Problem<N>&, std::uint64_t, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)

@@ -11,15 +11,17 @@ using scene::Counters;
 template <int N>
 class SideLight {
  public:
-  SideLight(const Problem<N>& problem, DirectLights which)
+  SideLight(const Problem<N>& problem, Purpose purpose, DirectLights which)
       : problem_(problem),
+        purpose_(static_cast<std::uint64_t>(purpose)),
         which_(which),
-        light_count_(problem.shading.scene().lights.size()) {}
+        first_surface_(static_cast<std::uint32_t>(problem.shading.scene().lights.size())),
+        sky_(scene::environment_source(problem.shading.scene())) {}
 
   /// \return  false if the point lies inside a closed body; asked only where `mixed`.
   bool measure(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                Counters& counters, bool mixed) const {
-    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0xd17ec7U, replicate),
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, purpose_, replicate),
                            problem_.stream(i), index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
@@ -28,36 +30,43 @@ class SideLight {
     if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return false;
     const auto s = problem_.shading.lights().sample(p.position, normal, choice, u);
     if (!s || !(s->pdf > 0.0f)) return true;
-    const bool is_surface = !s->dirac && s->light >= light_count_ && std::isfinite(s->distance);
+    const bool is_surface = s->source >= first_surface_ && s->source < sky_;
     if (which_ == DirectLights::NoSurfaces && is_surface) return true;
     const float cosine = s->wi.dot(normal);
     if (!(cosine > 0.0f) || s->radiance.is_zero()) return true;
-    const Spectrum<N> arriving =
-        problem_.shading.visibility(p, *s, counters, Counter::RaysDirect) * s->radiance;
-    if (arriving.is_zero()) return true;
-    const Spectrum<N> irradiance = arriving * (cosine / s->pdf);
+    const Spectrum<N> visible = problem_.shading.visibility(p, *s, counters, Counter::RaysDirect);
+    if ((visible * s->radiance).is_zero()) return true;
     const bool coupled = problem_.sides.coupled[i / 2] != 0;
-    const Spectrum<N> body =
-        coupled ? irradiance * problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
-                : irradiance;
-    sums.add(0, replicate, irradiance, body);
+    const Spectrum<N> body = coupled
+                                 ? problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
+                                 : Spectrum<N>::one();
+    const auto add = [&](std::uint32_t source, const Spectrum<N>& radiance) {
+      const Spectrum<N> irradiance = visible * radiance * (cosine / s->pdf);
+      if (!irradiance.is_zero())
+        sums.add(problem_.group_of(source), replicate, irradiance, irradiance * body);
+    };
+    if (s->source == sky_ && problem_.group_count() > 1)
+      problem_.shading.lights().sky_parts(*s, add);
+    else
+      add(s->source, s->radiance);
     return true;
   }
 
  private:
   const Problem<N>& problem_;
+  std::uint64_t purpose_;
   DirectLights which_;
-  std::size_t light_count_;
+  std::uint32_t first_surface_, sky_;  ///< sources that are surfaces; the environment
 };
 
 }  // namespace
 
 template <int N>
-bool sample_direct(const Problem<N>& problem, DirectLights which,
+bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
                    const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
-  const SideLight<N> light(problem, which);
+  const SideLight<N> light(problem, purpose, which);
   return draw_one_by_one(plan, tally, work, counters,
                       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                           Counters& c) {
@@ -83,13 +92,13 @@ template <int N>
 Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
                          Counters& counters) {
   Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-  sample_direct(problem, which, {}, top_up(problem, tally, problem.sides.active, samples), tally, work,
-                counters);
+  sample_direct(problem, Purpose::Count, which, {},
+                top_up(problem, tally, problem.sides.active, samples), tally, work, counters);
   return estimate_of(tally, problem);
 }
 
 #define ATRIUM_INSTANTIATE(N)                                                              \
-  template bool sample_direct(const Problem<N>&, DirectLights,                             \
+  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                             \
                               const std::vector<std::uint8_t>&, const std::vector<Draw>&,  \
                               Tally<N>&, Work&, Counters&);                                \
   template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                    \

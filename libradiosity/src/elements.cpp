@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cutting.h"
+#include "division.h"
 #include "facets.h"
 #include "material/material.h"
 #include "scene/parallel.h"
@@ -68,8 +69,18 @@ CellSize solve_cell_size(const std::vector<double>& areas, double budget) {
   }
 }
 
+/// A facet that fell into regions: where its triangles' look-up trees and new facets are.
+struct Divided {
+  Division division;
+  std::vector<std::uint32_t> triangles;
+  std::uint32_t first_facet = 0;  ///< of the part's
+};
+
 struct ObjectPart {
   std::vector<Facet> facets;
+  Corners corners;                      ///< the object's triangles, then parts of divided ones
+  std::vector<std::uint32_t> original;  ///< triangle of each of these parts
+  std::vector<Divided> divided;
   std::vector<CutFacet> cuts;
   double area = 0.0;
 };
@@ -92,8 +103,12 @@ class Builder {
     });
     limit_facets();
     choose_final_size();
+    const BarrierFinder barriers(scene_);
     scene::parallel_for(objects_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) cut(objects_[k]);
+      for (std::size_t k = begin; k < end; ++k) {
+        divide(barriers, objects_[k]);
+        cut(objects_[k]);
+      }
     });
     return assemble();
   }
@@ -147,10 +162,35 @@ class Builder {
     cap_ = size.cap;
   }
 
+  /// Regions of a facet that other surfaces part become facets of their own.
+  void divide(const BarrierFinder& barriers, std::size_t object) {
+    ObjectPart& part = parts_[object];
+    part.corners = object_corners(scene_, ObjectId(object));
+    const Corners whole = part.corners;
+    std::vector<Facet> facets;
+    for (Facet& f : part.facets) {
+      Division d = divide_facet(barriers, ObjectId(object), whole, f, cell_);
+      if (d.empty()) {
+        facets.push_back(std::move(f));
+        continue;
+      }
+      const auto shift = static_cast<std::uint32_t>(part.corners.size());
+      part.corners.insert(part.corners.end(), d.corners.begin(), d.corners.end());
+      part.original.insert(part.original.end(), d.original.begin(), d.original.end());
+      const auto first = static_cast<std::uint32_t>(facets.size());
+      for (Facet& region : d.facets) {
+        for (std::uint32_t& t : region.triangles) t += shift;
+        facets.push_back(std::move(region));
+      }
+      part.divided.push_back({std::move(d), std::move(f.triangles), first});
+    }
+    part.facets = std::move(facets);
+  }
+
   void cut(std::size_t object) {
-    const Corners corners = object_corners(scene_, ObjectId(object));
-    for (const Facet& f : parts_[object].facets)
-      parts_[object].cuts.push_back(cut_facet(corners, f, ObjectId(object), cell_, cap_));
+    ObjectPart& part = parts_[object];
+    for (const Facet& f : part.facets)
+      part.cuts.push_back(cut_facet(part.corners, f, ObjectId(object), cell_, cap_));
   }
 
   Elements assemble() {
@@ -161,22 +201,54 @@ class Builder {
     field.triangle_facet.assign(scene_.triangle_count(), SurfaceField::kNone);
     e.first_piece.push_back(0);
     for (const std::size_t object : objects_) {
+      append_cuts(field, object);
+      const std::uint32_t first_part = append_parts(e.pieces, parts_[object]);
       for (std::size_t k = 0; k < parts_[object].cuts.size(); ++k)
-        append(e, object, parts_[object].facets[k], parts_[object].cuts[k]);
+        append(e, object, parts_[object].facets[k], parts_[object].cuts[k], first_part);
       parts_[object] = {};
     }
     e.pieces.shrink_to_fit();
     return e;
   }
 
-  void append(Elements& e, std::size_t object, const Facet& facet, CutFacet& cut) {
+  /// Look-up trees of the divided triangles; the part's facets will follow those of the field.
+  void append_cuts(SurfaceField& field, std::size_t object) {
+    for (Divided& d : parts_[object].divided) {
+      const auto facet = static_cast<std::uint32_t>(field.facets.size()) + d.first_facet;
+      const auto cut = static_cast<std::uint32_t>(field.cuts.size());
+      const auto place = [&](std::uint32_t i) {
+        return i == SurfaceField::kNone ? i : i + (SurfaceField::is_cut(i) ? cut : facet);
+      };
+      for (SurfaceField::Cut& n : d.division.nodes) {
+        for (std::uint32_t& child : n.child) child = place(child);
+        field.cuts.push_back(n);
+      }
+      for (std::size_t k = 0; k < d.triangles.size(); ++k)
+        field.triangle_facet[scene_.objects[object].first_triangle + d.triangles[k]] =
+            place(d.division.root[k]);
+    }
+  }
+
+  /// What divided triangles fell into. \return the number of the first part.
+  static std::uint32_t append_parts(ElementPieces& pieces, const ObjectPart& part) {
+    const auto first = static_cast<std::uint32_t>(pieces.parts().size());
+    const std::size_t whole = part.corners.size() - part.original.size();
+    for (std::size_t t = whole; t < part.corners.size(); ++t)
+      pieces.add_part({part.original[t - whole], part.corners[t]});
+    return first;
+  }
+
+  void append(Elements& e, std::size_t object, const Facet& facet, CutFacet& cut,
+              std::uint32_t first_part) {
     SurfaceField& field = e.layout;
     const auto facet_id = static_cast<std::uint32_t>(field.facets.size());
     SurfaceField::Facet& grid = field.facets.emplace_back(cut.grid);
     grid.first_cell = static_cast<std::uint32_t>(field.nodes.size());
     field.nodes.resize(field.nodes.size() + std::size_t{grid.nx} * grid.ny, SurfaceField::kNone);
+    const std::size_t triangles = scene_.mesh_of(ObjectId(object)).triangles.size();
     for (const std::uint32_t t : facet.triangles)
-      field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
+      if (t < triangles)  // pieces are found by their cuts
+        field.triangle_facet[scene_.objects[object].first_triangle + t] = facet_id;
     for (std::size_t k = 0; k < cut.element_cell.size(); ++k) {
       const std::uint32_t cell = cut.element_cell[k];
       field.nodes[grid.first_cell + cell] = static_cast<std::uint32_t>(field.element_count());
@@ -186,8 +258,13 @@ class Builder {
       field.element_y.push_back(cell / grid.nx);
       float area = 0.0f;
       for (std::uint32_t p = cut.first_piece[k]; p < cut.first_piece[k + 1]; ++p) {
-        area += cut.pieces[p].area;
-        e.pieces.push_back(cut.pieces[p]);
+        ElementPiece piece = cut.pieces[p];
+        area += piece.area;
+        if (piece.triangle >= triangles) {
+          piece.part = first_part + piece.triangle - static_cast<std::uint32_t>(triangles);
+          piece.triangle = e.pieces.parts()[piece.part].triangle;
+        }
+        e.pieces.push_back(piece);
       }
       field.element_area.push_back(area);
       e.first_piece.push_back(static_cast<std::uint32_t>(e.pieces.size()));

@@ -13,7 +13,7 @@ struct PathEnd {
   Spectrum<N> in_medium;      ///< weight that the air took
   Vec3f direction = Vec3f::Zero();  ///< ... in this direction
   bool specular = false;            ///< the path met more than straight passages through panes
-  bool inside_solid = false;  ///< the first surface was the inner face of a closed opaque body
+  bool inside_solid = false;  ///< the first surface was the inner face of an unlit closed body
 };
 
 /// Extinction of the body that a path is in; bodies may be nested.
@@ -69,9 +69,12 @@ struct Landing {
   }
 };
 
-[[nodiscard]] inline bool inside_solid(const std::vector<std::uint8_t>& closed_opaque,
-                                       const scene::Hit& hit, bool front) {
-  return !front && closed_opaque[hit.object.value] != 0;
+/// Does a path whose first surface is this side of an object start where light never gets to?
+/// \param sides  what has `inner` as Sides has it.
+template <class AnySides>
+[[nodiscard]] bool inside_solid(const AnySides& sides, scene::ObjectId object, bool front) {
+  return sides.inner[object.value] ==
+         static_cast<std::uint8_t>(front ? scene::Side::Front : scene::Side::Back);
 }
 
 /// Takes off what the air absorbs, of which it lets `transmittance` pass.
@@ -96,7 +99,7 @@ void land(const World& problem, const scene::Ray& ray, const scene::Hit& hit,
           const Spectrum<N>& weight, bool first, PathEnd<N>& end, OnDiffuse&& on_diffuse,
           bool specular = false) {
   const bool front = ray.direction.dot(hit.ng) <= 0.0f;
-  if (first && inside_solid(problem.sides.closed_opaque, hit, front)) {
+  if (first && inside_solid(problem.sides, hit.object, front)) {
     end.inside_solid = true;
     return;
   }
@@ -122,7 +125,7 @@ struct IgnoreSurface {
 /// weight; where the surface also has a specular part the path goes on with that, chosen by
 /// sampling, with Russian roulette for weak paths.
 /// \param hit  the first surface on the ray.
-/// \param problem  Problem, or what else has `shading`, `sides.plain`, `sides.closed_opaque` and
+/// \param problem  Problem, or what else has `shading`, `sides.plain`, `sides.inner` and
 /// `side_at`.
 /// \param on_surface  (interaction, weight, specular) at every surface that is not plain, before its
 /// part in light.
@@ -157,7 +160,7 @@ PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit,
     const scene::SurfacePoint point = scene::surface_point(shading.scene(), hit);
     const scene::Interaction<N> at = shading.interact(point, wo_world);
     const bool front = at.side == scene::Side::Front;
-    if (depth == 0 && inside_solid(problem.sides.closed_opaque, hit, front)) {
+    if (depth == 0 && inside_solid(problem.sides, hit.object, front)) {
       end.inside_solid = true;
       return end;
     }

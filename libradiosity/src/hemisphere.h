@@ -95,7 +95,7 @@ template <int N>
   const Vec3f w = Frame(normal).to_world(sample_cosine_hemisphere(u)).normalized();
   const auto hit = problem.shading.closest({scene::offset_origin(p, w), w}, counters,
                                            scene::Counter::RaysProbe);
-  return hit && hit->ng.dot(w) > 0.0f && problem.sides.closed_opaque[hit->object.value] != 0;
+  return hit && inside_solid(problem.sides, hit->object, hit->ng.dot(w) <= 0.0f);
 }
 
 /// HotPatches::share_of_chance for what ray k of a side landed on.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <numbers>
 #include <vector>
 
@@ -19,6 +20,26 @@ class HotPatches {
   /// \param source  exchange irradiance from lights, by group and side.
   /// Empty if no small set of sides would carry most of the variance.
   HotPatches(const Problem<N>& problem, std::vector<SideValues<N>> source);
+
+  /// For both directions, see scene/archive.h.
+  template <class Archive>
+  void archive(Archive& a) {
+    auto groups = static_cast<std::uint64_t>(source_.size());
+    a(groups);
+    source_.resize(std::min<std::uint64_t>(groups, scene::kMostLightGroups));
+    for (SideValues<N>& s : source_) a(s);
+    a(sides_);
+    a(until_);
+    a(density_);
+  }
+
+  [[nodiscard]] bool is_for(std::size_t sides, std::size_t groups) const {
+    if (sides_.empty()) return true;
+    bool ok = until_.size() == sides_.size() && density_.size() == sides && source_.size() == groups;
+    for (const SideIndex i : sides_) ok = ok && i < sides;
+    for (const SideValues<N>& s : source_) ok = ok && s.size() == sides;
+    return ok;
+  }
 
   [[nodiscard]] bool empty() const { return sides_.empty(); }
   [[nodiscard]] std::size_t size() const { return sides_.size(); }

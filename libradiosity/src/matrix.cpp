@@ -1,23 +1,19 @@
-#include <numbers>
 #include <optional>
 
 #include <Eigen/LU>
 
+#include "emitters.h"
 #include "material/error.h"
 #include "occluders.h"
-#include "patches.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
 namespace {
 
-using scene::Counter;
 using scene::Counters;
-using scene::Side;
 using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t kLargestMatrix = 3000;
-constexpr std::size_t kMostEmitterPairs = 2000000;
 constexpr double kVisibilityRays = 4e6;  // of all pairs that something may stand between, about
 constexpr int kDirectFactor = 16;  // samples of lights that are not surfaces, times direct_samples
 
@@ -55,48 +51,14 @@ class MatrixSolver {
   }
 
  private:
-  struct Emitter {
-    Patch patch;
-    Spectrum<N> exitance;
-    double received = 0.0;  // A F [m^2], summed over all elements
-    [[nodiscard]] double mean_exitance() const {
-      double sum = 0.0;
-      for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(exitance[lane]);
-      return sum / N;
-    }
-  };
-
-  std::vector<Emitter> emitters() const {
-    std::vector<Emitter> list;
-    for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
-      const scene::ObjectId id(o);
-      const material::Material& m = scene_.material_of(id);
-      if (!m.emissive()) continue;
-      const bool uniform = !m.emission_texture.texture.valid();
-      for (std::uint32_t t = 0; t < scene_.mesh_of(id).triangles.size(); ++t)
-        for (const bool back : {false, true}) {
-          if (back && !m.emits_both_sides) continue;
-          if (!uniform) return {};  // sampled with the other lights
-          const scene::SurfacePoint p = scene::surface_point(scene_, id, t, 0.3f, 0.3f);
-          const Vec3f up = back ? Vec3f(-p.ng) : p.ng;
-          list.push_back({triangle_patch(scene_, id, t, back),
-                          problem_.shading.lights().emitted(p, up) * std::numbers::pi_v<float>});
-        }
-    }
-    return list;
-  }
-
   /// Emissive surfaces by exact factors, other lights by samples.
   void direct() {
-    emitters_ = emitters();
-    const bool by_factors = !emitters_.empty() && emitters_.size() * size_ <= kMostEmitterPairs;
-    if (!by_factors) emitters_.clear();
-    only_emitters_ = by_factors && scene_.lights.empty() && !scene_.environment;
-    if (!only_emitters_)
-      result_.direct =
-          direct_light(problem_, problem_.options.direct_samples * kDirectFactor,
-                       by_factors ? DirectLights::NoSurfaces : DirectLights::All, work_, counters_);
-    std::vector<double> received(emitters_.size() * size_, 0.0);
+    emitters_ = find_emitters(problem_);
+    if (emitters_.empty() || !only_surfaces_emit(scene_))
+      result_.direct = direct_light(
+          problem_, problem_.options.direct_samples * kDirectFactor,
+          emitters_.empty() ? DirectLights::All : DirectLights::NoSurfaces, work_, counters_);
+    std::vector<LaneValues<N>> received(emitters_.size() * size_);
     work_.run(emitters_.empty() ? 0 : size_, 8, counters_,
               [&](std::size_t begin, std::size_t end, Counters& c) {
                 for (std::size_t k = begin; k < end; ++k)
@@ -104,12 +66,14 @@ class MatrixSolver {
                     received[e * size_ + k] = receive(k, e, c);
               });
     for (std::size_t e = 0; e < emitters_.size(); ++e)
-      for (std::size_t k = 0; k < size_; ++k) emitters_[e].received += received[e * size_ + k];
+      for (std::size_t k = 0; k < size_; ++k)
+        for (std::size_t lane = 0; lane < N; ++lane)
+          emitters_[e].received[lane] += received[e * size_ + k][lane];
     add_emitters(received);
   }
 
   /// Fields are stored in single precision; the system and the balance need more.
-  void add_emitters(const std::vector<double>& received) {
+  void add_emitters(const std::vector<LaneValues<N>>& received) {
     direct_ = Matrix::Zero(static_cast<Eigen::Index>(size_), N);
     for (std::size_t k = 0; k < size_; ++k) {
       Spectrum<N>& stored = result_.direct.irradiance.plain[problem_.sides.active[k]];
@@ -117,62 +81,67 @@ class MatrixSolver {
         double& e = direct_(static_cast<Eigen::Index>(k), lane);
         e = static_cast<double>(stored[lane]);
         for (std::size_t j = 0; j < emitters_.size(); ++j)
-          e += static_cast<double>(emitters_[j].exitance[lane]) * received[j * size_ + k] /
-               patches_[k].area;
+          e += static_cast<double>(emitters_[j].exitance[lane]) *
+               received[j * size_ + k][static_cast<std::size_t>(lane)] / patches_[k].area;
         stored[lane] = static_cast<float>(e);
       }
     }
   }
 
-  double receive(std::size_t k, std::size_t e, Counters& counters) const {
+  LaneValues<N> receive(std::size_t k, std::size_t e, Counters& counters) const {
     return exchange_area(patches_[k], emitters_[e].patch, k, size_ + e, counters);
   }
 
   void exchange_areas() {
-    exchange_ = Matrix::Zero(static_cast<Eigen::Index>(size_), static_cast<Eigen::Index>(size_));
+    const auto n = static_cast<Eigen::Index>(size_);
+    require_memory();
+    exchange_.assign(problem_.shading.has_medium() ? N : 1, Matrix::Zero(n, n));
     work_.run(size_, 4, counters_, [&](std::size_t begin, std::size_t end, Counters& c) {
       for (std::size_t i = begin; i < end; ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          at(i, j) = exchange_area(patches_[i], patches_[j], i, j, c);
+        for (std::size_t j = 0; j < i; ++j) {
+          const LaneValues<N> af = exchange_area(patches_[i], patches_[j], i, j, c);
+          for (std::size_t m = 0; m < exchange_.size(); ++m)
+            exchange_[m](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = af[m];
+        }
     });
-    for (std::size_t i = 0; i < size_; ++i)
-      for (std::size_t j = 0; j < i; ++j) at(j, i) = at(i, j);
+    for (Matrix& m : exchange_) m.template triangularView<Eigen::StrictlyUpper>() = m.transpose();
+  }
+  void require_memory() {
+    constexpr std::uint64_t kSystem = 4;  // factors, the system, its factorisation and a product
+    const std::uint64_t matrices = kSystem + (problem_.shading.has_medium() ? N : 1);
+    const std::uint64_t bytes = matrices * size_ * size_ * sizeof(double);
+    MemoryBudget& memory = work_.memory();
+    if (bytes > memory.room(MemoryBudget::Part::Rows))
+      throw RuntimeFailure("radiosity: solver 'matrix' needs " + megabytes(bytes) + " for " +
+                           std::to_string(size_) + " element sides, and " +
+                           megabytes(memory.room(MemoryBudget::Part::Rows)) +
+                           " of the memory limit are left; use larger elements or solver 'rows'");
+    memory.hold(MemoryBudget::Part::Rows, bytes);
+  }
+  /// All lanes share one matrix where the air is clear: only mean transmittances count else.
+  [[nodiscard]] const Matrix& exchange(int lane) const {
+    return exchange_[exchange_.size() > 1 ? static_cast<std::size_t>(lane) : 0];
   }
 
-  double exchange_area(const Patch& a, const Patch& b, std::size_t i, std::size_t j,
-                       Counters& counters) const {
+  LaneValues<N> exchange_area(const Patch& a, const Patch& b, std::size_t i, std::size_t j,
+                              Counters& counters) const {
+    LaneValues<N> result{};
     const double free = unoccluded_exchange_area(a, b, always_contours_);
-    return free > 0.0 ? free * visible_share(a, b, i, j, counters) : 0.0;
-  }
-
-  /// Share of the exchange that nothing blocks: all of it where nothing can stand between, else by
-  /// rays weighted with the kernel. As many for every pair: to stop early where the first agree
-  /// would round shares near 0 and 1 away, and with them the sums of rows.
-  double visible_share(const Patch& a, const Patch& b, std::size_t i, std::size_t j,
-                       Counters& counters) const {
-    if (!occluders_.may_block(a, b)) return 1.0;
+    if (!(free > 0.0)) return result;
+    result.fill(free);
+    const bool blocked = occluders_.may_block(a, b);
+    if (!blocked && !problem_.shading.has_medium()) return result;
+    // As many rays for every pair: to stop early where the first agree would round shares near 0
+    // and 1 away, and with them the sums of rows. What the air lets pass is smooth.
+    constexpr double kFewest = 16.0;
+    constexpr double kInAir = 64.0;
     const double pairs = static_cast<double>(size_ * size_) * 0.5 + 1.0;
-    const int rays = static_cast<int>(std::clamp(kVisibilityRays / pairs, 16.0, 65536.0));
-    double seen = 0.0;
-    double all = 0.0;
-    for (int k = 0; k < rays; ++k) {
-      scene::Sampler sampler(problem_.options.seed + i, static_cast<std::uint32_t>(j),
-                             static_cast<std::uint32_t>(k));
-      const scene::SurfacePoint p = sample_patch(scene_, problem_.points, a, sampler.next_2d());
-      const scene::SurfacePoint q = sample_patch(scene_, problem_.points, b, sampler.next_2d());
-      const Vec3f d = q.position - p.position;
-      const float r2 = d.squaredNorm();
-      const float kernel =
-          (a.back ? -1.0f : 1.0f) * p.ng.dot(d) * (b.back ? 1.0f : -1.0f) * q.ng.dot(d) / (r2 * r2);
-      if (!(kernel > 0.0f) || p.ng.dot(d) * (a.back ? -1.0f : 1.0f) <= 0.0f) continue;
-      const float distance = std::sqrt(r2);
-      const Vec3f w = d / distance;
-      const scene::Ray ray{scene::offset_origin(p, w), w, 0.0f, distance * (1.0f - 1e-4f)};
-      all += static_cast<double>(kernel);
-      const Spectrum<N> t = problem_.shading.transmittance(ray, counters, Counter::RaysRow);
-      if (!t.is_zero()) seen += static_cast<double>(kernel * t.mean());
-    }
-    return all > 0.0 ? seen / all : 0.0;
+    const int rays = static_cast<int>(
+        blocked ? std::clamp(kVisibilityRays / pairs, kFewest, 65536.0) : kInAir);
+    const LaneValues<N> share = visible_share(
+        problem_, a, b, {problem_.options.seed + i, static_cast<std::uint32_t>(j), rays}, counters);
+    for (std::size_t lane = 0; lane < N; ++lane) result[lane] *= share[lane];
+    return result;
   }
 
   /// B = rho (S + F B) + tau (S + F B)_other; I = F B.
@@ -181,7 +150,7 @@ class MatrixSolver {
     Matrix f(n, n);
     for (std::size_t i = 0; i < size_; ++i)
       f.row(static_cast<Eigen::Index>(i)) =
-          exchange_.row(static_cast<Eigen::Index>(i)) / patches_[i].area;
+          exchange(lane).row(static_cast<Eigen::Index>(i)) / patches_[i].area;
     Matrix system = Matrix::Identity(n, n);
     Eigen::VectorXd right(n);
     for (std::size_t k = 0; k < size_; ++k) {
@@ -218,28 +187,20 @@ class MatrixSolver {
     return std::nullopt;
   }
 
-  /// Escaped: what the factors leave of every surface's radiosity; light from points, sun and sky
-  /// by photons.
+  /// What the factors leave of every surface's radiosity escapes, or ends where no elements are.
   void balance() {
     FluxBalance& f = result_.flux;
-    f.emitted = static_cast<double>(problem_.shading.lights().flux().mean());
-    if (only_emitters_) {
-      f.emitted = 0.0;
-      for (const Emitter& e : emitters_) {
-        f.emitted += e.mean_exitance() * e.patch.area;
-        f.escaped += e.mean_exitance() * (e.patch.area - e.received);
-      }
-    } else {
-      const Photons<N> photons = trace_photons(problem_, work_, counters_);
-      f.escaped = photons.escaped;
-      f.absorbed = photons.absorbed;
-      f.standard_error = std::sqrt(photons.variance);
-    }
+    f = emission_balance(problem_, emitters_, trace_photons(problem_, work_, counters_));
     if (radiosity_.size() == 0) return;
+    const std::vector<Beyond> beyond = beyond_sides(problem_, work_, counters_);
     for (std::size_t k = 0; k < size_; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
-      f.escaped += radiosity_.row(row).mean() * (patches_[k].area - exchange_.row(row).sum());
-      f.absorbed += patches_[k].area * absorbed(k);
+      double left = 0.0;
+      for (int lane = 0; lane < N; ++lane)
+        left += radiosity_(row, lane) * (patches_[k].area - exchange(lane).row(row).sum()) / N;
+      f.escaped += left * beyond[k].escaped;
+      f.absorbed += left * beyond[k].absorbed + patches_[k].area * absorbed(k);
+      f.in_medium += left * beyond[k].in_medium;
     }
   }
 
@@ -255,10 +216,6 @@ class MatrixSolver {
     return sum / N;
   }
 
-  double& at(std::size_t i, std::size_t j) {
-    return exchange_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-  }
-
   const Problem<N>& problem_;
   const scene::Scene& scene_;
   Work& work_;
@@ -267,11 +224,10 @@ class MatrixSolver {
   std::size_t size_;
   Occluders occluders_;
   std::vector<Patch> patches_;
-  std::vector<Emitter> emitters_;
-  Matrix exchange_;                       ///< A_i F_ij, symmetric
+  std::vector<Emitter<N>> emitters_;      ///< empty: sampled with the other lights
+  std::vector<Matrix> exchange_;          ///< A_i F_ij, symmetric; by lane where the air absorbs
   Matrix direct_, indirect_, radiosity_;  ///< sides x lanes
   bool always_contours_ = true;
-  bool only_emitters_ = false;
 };
 
 }  // namespace

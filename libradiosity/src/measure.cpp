@@ -6,9 +6,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "closed_bodies.h"
 #include "follow.h"
 #include "group_mean.h"
+#include "lit_spaces.h"
 #include "polygon_lights.h"
 #include "sensor_place.h"
 
@@ -29,8 +29,9 @@ struct World {
   const SurfaceField& field;
   const MeasureOptions& options;
   PolygonLights<N> polygons;
+  LitSpaces lit;
   struct {
-    std::vector<std::uint8_t> closed_opaque;
+    std::vector<std::uint8_t> inner;
     std::vector<std::uint8_t> plain;  // none: textured points of the field have to be shaded
   } sides;                            // as follow() wants it
   std::vector<float> total, body;  // of the field, all light
@@ -40,8 +41,12 @@ struct World {
   bool loop_dirac = false;
 
   World(const scene::Shading<N>& s, const SurfaceField& f, const MeasureOptions& o)
-      : shading(s), field(f), options(o), polygons(s), sides{closed_opaque_bodies(s),
-                                                             std::vector<std::uint8_t>(s.scene().objects.size(), 0)} {
+      : shading(s),
+        field(f),
+        options(o),
+        polygons(s),
+        lit(s.scene()),
+        sides{lit.inner_sides(), std::vector<std::uint8_t>(s.scene().objects.size(), 0)} {
     const material::SpectralBasis& basis = s.basis();
     for (int i = 0; i < N; ++i) {
       Spectrum<N> one;
@@ -159,8 +164,7 @@ class SensorRun {
   Reading measure() {
     Reading r;
     r.on_surface = place_.surface.has_value();
-    if (inside_solid(world_.shading.query(), world_.sides.closed_opaque, place_, counters_))
-      return r;
+    if (!world_.lit.contains(place_.origin)) return r;
     r.valid = true;
     if (world_.loop_dirac) add(r.direct, dirac_light(), 0.0);
     collect_parts();
@@ -206,17 +210,27 @@ class SensorRun {
 
   // ---- light ----
 
-  [[nodiscard]] Spectrum<N> transmittance(const Vec3f& direction, float distance) const {
-    constexpr float kBeforeTheLight = 1.0f - 1e-4f;
-    return world_.shading.transmittance(
-        {place_.origin, direction, 0.0f, distance * kBeforeTheLight}, counters_,
-        Counter::RaysDirect);
+  [[nodiscard]] Spectrum<N> visibility(const scene::LightSample<N>& s) const {
+    return world_.shading.visibility(place_.origin, s, counters_, Counter::RaysDirect);
+  }
+  /// Of a point on a polygon.
+  [[nodiscard]] Spectrum<N> visibility(const PolygonSampler::Sample& s, const Vec3d& ng) const {
+    const Vec3d q = place_.position + s.distance * s.direction;
+    scene::LightSample<N> light;
+    light.wi = s.direction.template cast<float>();
+    light.distance = static_cast<float>(s.distance);
+    const float rounding =
+        28.0f * 0x1p-24f * static_cast<float>(q.cwiseAbs().maxCoeff()) + 0x1p-20f * light.distance;
+    light.end = scene::offset_origin(
+        q.template cast<float>(), rounding,
+        (ng.dot(s.direction) > 0.0 ? Vec3d(-ng) : ng).template cast<float>());
+    return visibility(light);
   }
   /// Irradiance by a light sample, pdf included.
   [[nodiscard]] Lanes<N> arriving(const scene::LightSample<N>& s) const {
     const double cosine = s.wi.template cast<double>().dot(place_.normal);
     if (!(cosine > 0.0) || !(s.pdf > 0.0f) || s.radiance.is_zero()) return Lanes<N>::Zero();
-    return to_lanes<N>(transmittance(s.wi, s.distance) * s.radiance) *
+    return to_lanes<N>(visibility(s) * s.radiance) *
            (cosine / static_cast<double>(s.pdf));
   }
   [[nodiscard]] Lanes<N> dirac_light() const {
@@ -246,7 +260,7 @@ class SensorRun {
     part.largest = world_.y(exact);
     const double share = y_all > 0.0 ? part.largest / y_all : 1.0;
     part.pilot = in_groups(std::clamp(256.0 * share, 16.0, 64.0));
-    part.draw = [this, exact,
+    part.draw = [this, exact, ng = polygon.normal,
                  sampler = PolygonSampler(polygon.corners, polygon.normal, place_.position,
                                           place_.normal)](scene::Sampler& random, Counters&) {
       const float choice = random.next_1d();
@@ -254,8 +268,7 @@ class SensorRun {
       const auto s = sampler.sample(choice, random.next_2d());
       if (!s || !(s->weight > 0.0)) return d;
       d.f = s->weight;
-      d.value = exact * to_lanes<N>(transmittance(s->direction.template cast<float>(),
-                                                  static_cast<float>(s->distance)));
+      d.value = exact * to_lanes<N>(visibility(*s, ng));
       return d;
     };
     parts_.push_back(std::move(part));

@@ -21,12 +21,17 @@ struct Estimate {
 template <int N>
 [[nodiscard]] Estimate<N> estimate_of(const Tally<N>& tally, const Problem<N>& problem);
 
+/// What samples are for. Those that decide (what is divided, which patches are hot) are never those
+/// that count: what was found bright by chance would be measured again and what was found dark
+/// would not, and the mean would be too dark.
+enum class Purpose : std::uint64_t { Decide = 0x9d17ec7U, Count = 0xd17ec7U };
+
 /// Light that arrives straight or through panes: draws the samples of `plan` into the tally.
 /// \param which  lights that take part. \param mixed  by side: may a part of it lie inside a closed
 /// body? Points there count for nothing. Empty: no side is.
 enum class DirectLights { All, NoSurfaces };
 template <int N>
-bool sample_direct(const Problem<N>& problem, DirectLights which,
+bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
                    const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, scene::Counters& counters);
 /// The same for solvers that need one estimate of all groups, `samples` for every active side.
@@ -47,7 +52,10 @@ struct Photons {
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,
                                        scene::Counters& counters);
-/// As many as the scene needs by the options.
+/// How many photons may wait for their places at once, at most `wanted`?
+template <int N>
+[[nodiscard]] std::uint64_t photons_that_fit(const MemoryBudget& memory, std::uint64_t wanted);
+/// As many as the scene needs by the options and there is memory for.
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, Work& work,
                                        scene::Counters& counters);

@@ -182,8 +182,8 @@ class Walk {
       f.weight *= f.media.empty() ? shading_.through_medium(f.ray, distance)
                                   : exp_minus(f.media.extinction(), distance);
       const scene::Interaction<N> at = shading_.interact(*hit, -f.ray.direction);
-      if (depth == 0 && at.side == Side::Back &&
-          problem_.sides.closed_opaque[hit->object.value] != 0)
+      if (depth == 0 &&
+          problem_.sides.inner[hit->object.value] == static_cast<std::uint8_t>(at.side))
         return false;
       add_lamp(v, f, *hit);
       const Vec3f wo = at.to_local(-f.ray.direction);

@@ -2,14 +2,29 @@
 
 #include <algorithm>
 
-#include "closed_bodies.h"
+#include "memory_budget.h"
 
 namespace atrium::radiosity {
 
-using scene::ObjectId;
 using scene::Side;
 using scene::SurfaceField;
 using scene::SurfacePoint;
+
+namespace {
+
+/// By which a polygon has to shrink for its points to keep clear of its edges.
+float shrink_of(const ElementPiece& piece) {
+  float perimeter = 0.0f;
+  float size = 0.0f;
+  for (std::size_t k = 0; k < piece.corners.size(); ++k) {
+    perimeter += (piece.corners[(k + 1) % piece.corners.size()] - piece.corners[k]).norm();
+    size = std::max(size, piece.corners[k].cwiseAbs().maxCoeff());
+  }
+  const float inradius = 2.0f * piece.area / perimeter;
+  return std::min(0.5f, 0x1p-21f * size / inradius);
+}
+
+}  // namespace
 
 ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements)
     : scene_(&scene), elements_(&elements) {
@@ -21,10 +36,16 @@ ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements
       const auto& piece = elements.pieces[p];
       const SurfacePoint point =
           scene::surface_point(scene, piece.object, piece.triangle, 1.0f / 3, 1.0f / 3);
+      const float shrink = shrink_of(piece);
+      Vec3f middle = Vec3f::Zero();
+      for (const Vec3f& corner : piece.corners) middle += corner;
+      middle /= static_cast<float>(piece.corners.size());
+      const Vec3f corner = piece.corners[0] + shrink * (middle - piece.corners[0]);
       for (std::size_t c = 1; c + 1 < piece.corners.size(); ++c) {
         const Vec3f edge1 = piece.corners[c] - piece.corners[0];
         const Vec3f edge2 = piece.corners[c + 1] - piece.corners[0];
-        fans_.push_back({piece.corners[0], edge1, edge2, point.ng, point.error, p});
+        fans_.push_back({corner, (1.0f - shrink) * edge1, (1.0f - shrink) * edge2, point.ng,
+                         point.error, p});
         sum += 0.5 * edge1.cast<double>().cross(edge2.cast<double>()).norm();
         area_until_.push_back(static_cast<float>(sum));
       }
@@ -69,6 +90,10 @@ ElementPoints::Spot ElementPoints::spot(std::uint32_t element, float u, float v)
   return {f.corner + (root * (1.0f - v)) * f.edge1 + (root * v) * f.edge2, fan};
 }
 
+std::size_t ElementPoints::bytes() const {
+  return bytes_of(first_) + bytes_of(fans_) + bytes_of(area_until_);
+}
+
 SurfacePoint ElementPoints::surface(const Spot& spot) const {
   const ElementPiece piece = elements_->pieces[fans_[spot.fan].piece];
   const Vec2f b = barycentric(scene_->corners(piece.object, piece.triangle), spot.position);
@@ -91,8 +116,14 @@ template <int N>
 class SideProperties {
  public:
   SideProperties(const scene::Shading<N>& shading, const Elements& elements,
-                 const ElementPoints& points, std::uint64_t seed)
-      : shading_(shading), elements_(elements), points_(points), seed_(seed) {}
+                 const ElementPoints& points, const LitSpaces& lit,
+                 const std::vector<std::uint32_t>& streams, std::uint64_t seed)
+      : shading_(shading),
+        elements_(elements),
+        points_(points),
+        lit_(lit),
+        streams_(streams),
+        seed_(seed) {}
 
   void find(Sides<N>& sides, std::uint32_t element) const {
     const ElementPiece piece = elements_.pieces[elements_.first_piece[element]];
@@ -100,16 +131,31 @@ class SideProperties {
     const auto& material = shading_.material(object.material);
     const bool colours = !shading_.scene().meshes[object.mesh.value].colors.empty();
     const int count = any_texture(material) || colours ? 16 : 1;
+    const LitSpaces::Bodies near = lit_.near(elements_, element);
     for (const Side side : {Side::Front, Side::Back}) {
-      if (is_outside(shading_, sides, piece.object, side)) average(sides, element, side, count);
+      if (is_outside(shading_, sides, piece.object, side) && reached(element, side, near))
+        average(sides, element, side, count);
     }
   }
 
  private:
+  /// Can light get to any of a few points of the side?
+  bool reached(std::uint32_t element, Side side, const LitSpaces::Bodies& near) const {
+    if (near.empty()) return true;
+    constexpr std::uint32_t kPoints = 4;
+    for (std::uint32_t k = 0; k < kPoints; ++k) {
+      scene::Sampler sampler(seed_ ^ 0x1175U, streams_[2 * element], k);
+      const SurfacePoint p = points_.sample(element, sampler.next_2d());
+      if (lit_.contains(scene::offset_origin(p, side == Side::Front ? p.ng : Vec3f(-p.ng)), near))
+        return true;
+    }
+    return false;
+  }
+
   void average(Sides<N>& sides, std::uint32_t element, Side side, int count) const {
     const SideIndex i = side_index(element, side);
     for (int k = 0; k < count; ++k) {
-      scene::Sampler sampler(seed_ ^ 0x7e57U, i, static_cast<std::uint32_t>(k));
+      scene::Sampler sampler(seed_ ^ 0x7e57U, streams_[i], static_cast<std::uint32_t>(k));
       const SurfacePoint point = points_.sample(element, sampler.next_2d());
       const Vec3f up = side == Side::Front ? point.ng : Vec3f(-point.ng);
       const scene::Interaction<N> at = shading_.interact(point, up);
@@ -130,8 +176,46 @@ class SideProperties {
   const scene::Shading<N>& shading_;
   const Elements& elements_;
   const ElementPoints& points_;
+  const LitSpaces& lit_;
+  const std::vector<std::uint32_t>& streams_;
   std::uint64_t seed_;
 };
+
+/// Where most of an element lies under another object's, that one's element takes its place.
+template <int N>
+void find_covers(const scene::Scene& scene, const Covers& covers, const Elements& elements,
+                 const ElementPoints& points, const std::vector<std::uint32_t>& streams,
+                 std::uint64_t seed, Sides<N>& sides) {
+  constexpr std::uint32_t kPoints = 4;
+  sides.cover.assign(sides.is_active.size(), kNoSide);
+  scene::parallel_for(sides.is_active.size() / 2, 256, [&](std::size_t begin, std::size_t end) {
+    for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+      if (sides.is_active[2 * e] == 0 && sides.is_active[2 * e + 1] == 0) continue;
+      std::uint32_t count = 0;
+      for (std::uint32_t k = 0; k < kPoints && k < count + 2; ++k) {
+        scene::Sampler sampler(seed ^ 0xc0feU, streams[2 * e], k);
+        const SurfacePoint p = points.sample(e, sampler.next_2d());
+        const auto cover = covers.of(p);
+        if (!cover) continue;
+        const std::uint32_t other =
+            elements.layout.element_at(scene, cover->object, cover->triangle, p.position);
+        if (other == SurfaceField::kNone) continue;
+        ++count;
+        sides.cover[2 * e] = 2 * other + (cover->turned ? 1 : 0);
+        sides.cover[2 * e + 1] = sides.cover[2 * e] ^ 1U;
+      }
+      if (count + 1 < kPoints) sides.cover[2 * e] = sides.cover[2 * e + 1] = kNoSide;
+    }
+  });
+  // Covers have lower objects and so lower elements: they are settled first.
+  for (SideIndex i = 0; i < sides.cover.size(); ++i) {
+    SideIndex& cover = sides.cover[i];
+    if (cover != kNoSide && sides.cover[cover] != kNoSide) cover = sides.cover[cover];
+    if (cover != kNoSide && (sides.is_active[i] == 0 || sides.is_active[cover] == 0))
+      cover = kNoSide;
+    if (cover != kNoSide) sides.is_active[i] = 0;
+  }
+}
 
 /// Objects of which a Bsdf without any point in mind says all.
 template <int N>
@@ -163,10 +247,16 @@ bool specular_scene(const scene::Scene& scene) {
 template <int N>
 Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& elements_in,
                     const SolveOptions& options_in)
+    : Problem(shading_in, Surroundings(shading_in.scene()), elements_in, options_in) {}
+
+template <int N>
+Problem<N>::Problem(const scene::Shading<N>& shading_in, const Surroundings& surroundings,
+                    const Elements& elements_in, const SolveOptions& options_in)
     : shading(shading_in),
       elements(elements_in),
       options(options_in),
       points(shading_in.scene(), elements_in),
+      groups(scene::find_light_groups(shading_in.scene(), options_in.light_groups)),
       specular(specular_scene(shading_in.scene())) {
   const std::size_t n = side_count();
   // By place, not by number: what is known of an element stays when others are divided.
@@ -180,12 +270,15 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
   sides.reflectance.assign(n, {});
   sides.transmittance.assign(n, {});
   sides.coupled.assign(n / 2, 0);
-  sides.closed_opaque = closed_opaque_bodies(shading);
+  sides.inner = surroundings.lit.inner_sides();
   sides.plain = find_plain(shading);
-  const SideProperties<N> properties(shading, elements, points, options.seed);
+  const SideProperties<N> properties(shading, elements, points, surroundings.lit, streams_,
+                                     options.seed);
   scene::parallel_for(n / 2, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) properties.find(sides, static_cast<std::uint32_t>(e));
   });
+  find_covers(shading.scene(), surroundings.covers, elements, points, streams_, options.seed,
+              sides);
   for (SideIndex i = 0; i < n; ++i)
     if (sides.is_active[i] != 0) sides.active.push_back(i);
   sides.any_coupled = std::any_of(sides.coupled.begin(), sides.coupled.end(),
@@ -193,13 +286,31 @@ Problem<N>::Problem(const scene::Shading<N>& shading_in, const Elements& element
 }
 
 template <int N>
-SideIndex Problem<N>::side_at(ObjectId object, std::uint32_t triangle, const Vec3f& position,
+std::size_t Problem<N>::bytes() const {
+  return points.bytes() + bytes_of(streams_) + bytes_of(sides.active) + bytes_of(sides.is_active) +
+         bytes_of(sides.reflectance) + bytes_of(sides.transmittance) + bytes_of(sides.coupled);
+}
+
+template <int N>
+SideIndex Problem<N>::side_at(scene::ObjectId object, std::uint32_t triangle, const Vec3f& position,
                               Side side) const {
   const std::uint32_t element =
       elements.layout.element_at(shading.scene(), object, triangle, position);
   if (element == SurfaceField::kNone) return kNoSide;
   const SideIndex i = side_index(element, side);
-  return sides.is_active[i] != 0 ? i : kNoSide;
+  return sides.is_active[i] != 0 ? i : cover_at(i, position);
+}
+
+template <int N>
+SideIndex Problem<N>::cover_at(SideIndex i, const Vec3f& position) const {
+  const SideIndex cover = sides.cover[i];
+  if (cover == kNoSide) return kNoSide;
+  // The cover may be divided further than what it covers.
+  const std::uint32_t element =
+      elements.layout.element_of_facet(elements.layout.element_facet[cover / 2], position);
+  if (element == SurfaceField::kNone) return cover;
+  const SideIndex here = side_index(element, side_of(cover));
+  return sides.is_active[here] != 0 ? here : cover;
 }
 
 template struct Problem<1>;

@@ -3,8 +3,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "covers.h"
+#include "lit_spaces.h"
 #include "radiosity/elements.h"
 #include "radiosity/solve.h"
+#include "scene/light_groups.h"
 #include "scene/sampler.h"
 #include "scene/shading.h"
 #include "work.h"
@@ -25,8 +28,9 @@ inline constexpr SideIndex kNoSide = 0xffffffffU;
   return std::min(samples, std::max(8, samples >> std::min(level, 8)));
 }
 
-/// Draws points on an element, uniform by area. Holds the elements' pieces as triangles, so that a
-/// point costs one search and no look at the scene.
+/// Draws points on an element, uniform by area but for a rim as wide as a few roundings of a
+/// coordinate: what stands on the rim (a wall) must not find a point on its other side. Holds the
+/// elements' pieces as triangles, so that a point costs one search and no look at the scene.
 class ElementPoints {
  public:
   ElementPoints(const scene::Scene& scene, const Elements& elements);
@@ -42,6 +46,7 @@ class ElementPoints {
   [[nodiscard]] float error(std::uint32_t fan) const { return fans_[fan].error; }
   /// \param u  in [0, 1)^2.
   [[nodiscard]] scene::SurfacePoint sample(std::uint32_t element, const Vec2f& u) const;
+  [[nodiscard]] std::size_t bytes() const;
   /// The surface at a spot, for materials.
   [[nodiscard]] scene::SurfacePoint surface(const Spot& spot) const;
 
@@ -68,10 +73,24 @@ struct Sides {
   std::vector<Spectrum<N>> transmittance;  ///< ... per irradiance of the other side
   std::vector<std::uint8_t> coupled;       ///< by element: E_B is what reflectance applies to
   bool any_coupled = false;
-  std::vector<std::uint8_t> closed_opaque;  ///< by object: a hit on its back means "inside"
+  /// By object: the side that is inside a closed opaque body that no light is in, or kNoInner. A
+  /// path that first meets it started where light never gets to.
+  std::vector<std::uint8_t> inner;
+  static constexpr std::uint8_t kNoInner = 2;
+  /// By side, of those that lie under another object's surface in their own plane: the side that
+  /// counts their light (Covers), else kNoSide. They are not active and have that side's
+  /// irradiance.
+  std::vector<SideIndex> cover;
   /// By object: scatters diffusely and does nothing else, the same everywhere. Then a hit's side is
   /// all that light transport needs to know.
   std::vector<std::uint8_t> plain;
+};
+
+/// What a scene's geometry says about where light gets to, whatever the elements are.
+struct Surroundings {
+  explicit Surroundings(const scene::Scene& scene) : lit(scene), covers(scene) {}
+  LitSpaces lit;
+  Covers covers;
 };
 
 /// May a side of an object's surface take part? Diffuse light at the inner faces of solids and at
@@ -79,9 +98,9 @@ struct Sides {
 template <int N>
 [[nodiscard]] bool is_outside(const scene::Shading<N>& shading, const Sides<N>& sides,
                               scene::ObjectId object, scene::Side side) {
-  if (side == scene::Side::Front) return true;
+  if (sides.inner[object.value] == static_cast<std::uint8_t>(side)) return false;
   const scene::MaterialId material = shading.scene().objects[object.value].material;
-  return sides.closed_opaque[object.value] == 0 && !shading.material(material).source->one_sided;
+  return side == scene::Side::Front || !shading.material(material).source->one_sided;
 }
 
 /// Everything that the passes share and none of them changes.
@@ -89,25 +108,35 @@ template <int N>
 struct Problem {
   Problem(const scene::Shading<N>& shading_in, const Elements& elements_in,
           const SolveOptions& options_in);
+  /// For several meshes of one scene. \param surroundings  of that scene.
+  Problem(const scene::Shading<N>& shading_in, const Surroundings& surroundings,
+          const Elements& elements_in, const SolveOptions& options_in);
 
   const scene::Shading<N>& shading;
   const Elements& elements;
   const SolveOptions& options;
   ElementPoints points;
   Sides<N> sides;
+  scene::LightGroups groups;
   bool specular = false;  ///< does anything mirror, refract or gloss?
 
-  [[nodiscard]] std::size_t group_count() const { return 1; }
+  [[nodiscard]] std::size_t group_count() const { return groups.size(); }
+  [[nodiscard]] std::uint32_t group_of(std::uint32_t source) const { return groups.group[source]; }
   [[nodiscard]] std::size_t side_count() const { return elements.layout.element_count() * 2; }
   [[nodiscard]] float area(SideIndex i) const { return elements.layout.element_area[i / 2]; }
   [[nodiscard]] int level(SideIndex i) const { return elements.layout.element_level[i / 2]; }
   /// Number of a side's own random sequence.
   [[nodiscard]] std::uint32_t stream(SideIndex i) const { return streams_[i]; }
+  /// Counted bytes of what this holds beside the elements.
+  [[nodiscard]] std::size_t bytes() const;
   /// The active side that a hit belongs to, or kNoSide.
   [[nodiscard]] SideIndex side_at(scene::ObjectId object, std::uint32_t triangle,
                                   const Vec3f& position, scene::Side side) const;
 
  private:
+  /// The active side that counts the light of one that is not, at a place; or kNoSide.
+  [[nodiscard]] SideIndex cover_at(SideIndex i, const Vec3f& position) const;
+
   std::vector<std::uint32_t> streams_;
 };
 

@@ -14,10 +14,12 @@ constexpr std::uint32_t kNone = SurfaceField::kNone;
 // Cells below this many times what float coordinates resolve are not divided.
 constexpr double kResolvable = 64.0;
 
-/// The pieces of an element's four quarters.
-struct Quarters {
-  std::array<ElementPieces, 4> pieces;
+/// A piece of a quarter, and which piece of the whole it is from.
+struct QuarterPiece {
+  std::uint32_t whole;
+  CellPiece part;
 };
+using Quarters = std::vector<QuarterPiece>;
 
 class Refiner {
  public:
@@ -76,6 +78,12 @@ class Refiner {
     });
   }
 
+  /// What all pieces of a triangle, or of one of its parts, are cut from.
+  std::array<Vec3f, 3> source_of(const ElementPiece& piece) const {
+    return piece.part == ElementPiece::kWhole ? scene_.corners(piece.object, piece.triangle)
+                                              : old_.pieces.parts()[piece.part].corners;
+  }
+
   Quarters quarter(std::uint32_t e) const {
     Quarters result;
     Cutter cutter(layout_.facets[layout_.element_facet[e]]);
@@ -83,10 +91,9 @@ class Refiner {
     for (std::uint32_t p = old_.first_piece[e]; p < old_.first_piece[e + 1]; ++p) {
       const ElementPiece whole = old_.pieces[p];
       parts.clear();
-      cutter.quarter(scene_.corners(whole.object, whole.triangle), layout_.element_level[e],
-                     layout_.element_x[e], layout_.element_y[e], parts);
-      for (const CellPiece& part : parts)
-        result.pieces[part.cell].push_back({whole.object, whole.triangle, part.area, part.corners});
+      cutter.quarter(source_of(whole), layout_.element_level[e], layout_.element_x[e],
+                     layout_.element_y[e], parts);
+      for (CellPiece& part : parts) result.push_back({p, std::move(part)});
     }
     return result;
   }
@@ -99,6 +106,8 @@ class Refiner {
     e.min_element_size = old_.min_element_size;
     e.layout.facets = layout_.facets;
     e.layout.triangle_facet = layout_.triangle_facet;
+    e.layout.cuts = layout_.cuts;
+    e.pieces.set_parts(old_.pieces.parts());
     e.layout.nodes.assign(base_cells_, kNone);
     e.first_piece.push_back(0);
   }
@@ -122,11 +131,19 @@ class Refiner {
     }
     const std::uint32_t first = open_block(slot);
     for (const std::uint32_t k : {0U, 1U, 2U, 3U}) {
-      const ElementPieces& pieces = quarters_[quarters_of_[node]].pieces[k];
-      if (pieces.size() == 0) continue;
-      for (std::size_t p = 0; p < pieces.size(); ++p) result_.elements.pieces.push_back(pieces[p]);
-      append(node, first + k, level + 1, 2 * x + (k & 1U), 2 * y + (k >> 1U));
+      const std::size_t before = result_.elements.pieces.size();
+      for (const QuarterPiece& piece : quarters_[quarters_of_[node]])
+        if (piece.part.cell == k) take(piece);
+      if (result_.elements.pieces.size() > before)
+        append(node, first + k, level + 1, 2 * x + (k & 1U), 2 * y + (k >> 1U));
     }
+  }
+
+  void take(const QuarterPiece& piece) {
+    ElementPiece own = old_.pieces[piece.whole];
+    own.area = piece.part.area;
+    own.corners = piece.part.corners;
+    result_.elements.pieces.push_back(own);
   }
 
   std::uint32_t open_block(std::uint32_t slot) {

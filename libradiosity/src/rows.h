@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hot_patches.h"
+#include "memory_budget.h"
 #include "problem.h"
 
 namespace atrium::radiosity {
@@ -50,6 +51,23 @@ struct Rows {
   std::size_t groups = 0;
 
   [[nodiscard]] std::size_t size() const { return rays.size(); }
+  [[nodiscard]] std::uint64_t bytes() const {
+    return bytes_of(first) + bytes_of(entries) + bytes_of(spectral) + bytes_of(rays) +
+           bytes_of(dropped) + bytes_of(escaped) + bytes_of(in_medium) + bytes_of(hot);
+  }
+  /// Of these sides, with every index in its range?
+  [[nodiscard]] bool is_for(std::size_t sides, std::size_t active) const {
+    bool ok = rays.size() == active && first.size() == active + 1 && dropped.size() == active &&
+              escaped.size() == active && in_medium.size() == active &&
+              hot.size() == 2 * groups * active && first.front() == 0 &&
+              first.back() == entries.size();
+    for (std::size_t k = 0; k < active && ok; ++k) ok = first[k] <= first[k + 1];
+    for (const Entry& e : entries) {
+      const bool chromatic = (e.target & kChromatic) != 0;
+      ok = ok && (e.target & ~kChromatic) < sides && (!chromatic || e.spectral < spectral.size());
+    }
+    return ok;
+  }
   [[nodiscard]] Spectrum<N> hot_sum(std::size_t k, std::size_t group, bool body) const {
     return hot.empty() ? Spectrum<N>() : hot[(k * groups + group) * 2 + (body ? 1 : 0)];
   }
@@ -77,6 +95,13 @@ struct Rows {
     return sum;
   }
 };
+
+/// Bytes that trace_rows() may need for so many new rays, from above: chunks and joined rows.
+/// \param old  bytes of the rows that it adds to.
+template <int N>
+[[nodiscard]] std::uint64_t bytes_for_rows(std::uint64_t old, std::uint64_t rays) {
+  return 2 * old + 3 * rays * sizeof(typename Rows<N>::Entry);
+}
 
 /// \param hot  shot besides, see sample_hot; the same in all calls for the same rows.
 /// Traces rays [first_ray, last_ray) of every active side whose `wanted` is set and adds them to

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/sampler.h"
-
 namespace atrium::radiosity {
 
 using scene::Counter;
@@ -33,26 +31,6 @@ SensorPlace place_sensor(const scene::RayQuery& query, const Sensor& sensor,
   place.surface = surface;
   place.origin = scene::offset_origin(surface, up);
   return place;
-}
-
-bool inside_solid(const scene::RayQuery& query, const std::vector<std::uint8_t>& closed_opaque,
-                  const SensorPlace& place, scene::Counters& counters) {
-  if (std::find(closed_opaque.begin(), closed_opaque.end(), 1) == closed_opaque.end()) return false;
-  constexpr std::uint32_t kRays = 33;
-  std::uint32_t inside = 0;
-  for (std::uint32_t k = 0; k < kRays; ++k) {
-    scene::Sampler sampler(0x501d, 0, k);
-    // On a surface only one side is asked: what is below it does not matter.
-    const Vec3f up = place.normal.cast<float>();
-    const Vec3f local = sample_cosine_hemisphere(sampler.next_2d());
-    const bool flip = !place.surface && (k & 1U) != 0;
-    const Vec3f direction = Frame(up).to_world(flip ? Vec3f(-local) : local).normalized();
-    const auto hit = query.closest({place.origin, direction}, counters, Counter::RaysProbe);
-    if (!hit || closed_opaque[hit->object.value] == 0) continue;
-    const scene::SurfacePoint point = scene::surface_point(query.scene(), *hit);
-    inside += point.ng.dot(direction) > 0.0f ? 1 : 0;
-  }
-  return 2 * inside > kRays;
 }
 
 }  // namespace atrium::radiosity

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "radiosity/measure.h"
 #include "scene/ray_query.h"
@@ -21,11 +19,5 @@ struct SensorPlace {
 /// A sensor lies on a surface if that is within 1e-5 of the scene's size along its normal.
 [[nodiscard]] SensorPlace place_sensor(const scene::RayQuery& query, const Sensor& sensor,
                                        scene::Counters& counters);
-
-/// Do most directions from the sensor meet the back of a closed opaque body first?
-/// \param closed_opaque  by object.
-[[nodiscard]] bool inside_solid(const scene::RayQuery& query,
-                                const std::vector<std::uint8_t>& closed_opaque,
-                                const SensorPlace& place, scene::Counters& counters);
 
 }  // namespace atrium::radiosity

@@ -1,14 +1,13 @@
-#include "patches.h"
+#include "emitters.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
 namespace {
 
-using scene::Counter;
 using scene::Counters;
 
-/// Progressive refinement [Cohen et al. 1988]: the side with the most unshot flux sends it to all
-/// others, until little is left.
+/// Progressive refinement [Cohen et al. 1988]: emitters first, then the side with the most unshot
+/// flux sends it to all others, until little is left.
 template <int N>
 class ShootingSolver {
  public:
@@ -17,32 +16,42 @@ class ShootingSolver {
         work_(work),
         counters_(counters),
         result_(problem),
+        emitters_(find_emitters(problem)),
         unshot_(problem.side_count()),
-        received_(problem.side_count()) {
+        received_(problem.side_count()),
+        beyond_(problem.side_count(), 0.0),
+        rays_(problem.shading.has_medium() ? kRaysInAir : kRays) {
     require_diffuse(problem, "shooting");
   }
 
   Solution<N> solve() {
     work_.begin("direct light", 0.2);
-    result_.direct = direct_light(problem_, problem_.options.direct_samples, DirectLights::All,
-                                  work_, counters_);
-    const Photons<N> photons = trace_photons(problem_, work_, counters_);
+    direct();
     for (const SideIndex i : problem_.sides.active)
       unshot_[i] = leaving(problem_.sides, i, result_.direct.irradiance.plain[i],
                            result_.direct.irradiance.plain[i ^ 1U]);
     work_.begin("shooting", 0.95);
     shoot_all();
     add_ambient();
-    // Hemisphere rays count what escapes; the exchange itself does not need them.
-    constexpr int kEscapeRays = 256;
-    const Rows<N> rows =
-        trace_rows<N>(problem_, {}, {}, std::vector<std::uint8_t>(problem_.sides.active.size(), 1), 0,
-                      kEscapeRays, work_, counters_);
-    result_.flux = flux_balance(problem_, result_, photons, rows);
+    balance();
     return std::move(result_);
   }
 
  private:
+  /// Emissive surfaces are shot like others, only with more rays; other lights are sampled.
+  void direct() {
+    if (emitters_.empty() || !only_surfaces_emit(problem_.shading.scene()))
+      result_.direct = direct_light(
+          problem_, problem_.options.direct_samples,
+          emitters_.empty() ? DirectLights::All : DirectLights::NoSurfaces, work_, counters_);
+    for (Emitter<N>& e : emitters_) {
+      if (work_.stopped()) return;
+      e.received = find_factors(e.patch, kNoSide, std::max(rays_, problem_.options.direct_samples));
+      for (const SideIndex j : problem_.sides.active)
+        result_.direct.irradiance.plain[j] += e.exitance * received_[j];
+    }
+  }
+
   double flux(SideIndex i) const {
     return static_cast<double>(unshot_[i].mean()) * static_cast<double>(problem_.area(i));
   }
@@ -73,19 +82,12 @@ class ShootingSolver {
     const Patch shooter = element_patch(problem_.elements, i);
     const Spectrum<N> sent = unshot_[i];
     unshot_[i] = {};
-    const std::vector<SideIndex>& active = problem_.sides.active;
-    constexpr std::size_t kGrain = 256;
-    std::vector<Counters> counts((active.size() + kGrain - 1) / kGrain);
-    scene::parallel_for(active.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        received_[active[k]] =
-            active[k] / 2 == i / 2
-                ? 0.0f
-                : static_cast<float>(factor(active[k], shooter, counts[begin / kGrain]));
-    });
-    for (const Counters& c : counts) counters_ += c;
-    for (const SideIndex j : active) {
-      if (received_[j] == 0.0f) continue;
+    const LaneValues<N> arrived = find_factors(shooter, i, rays_);
+    for (int lane = 0; lane < N; ++lane)
+      beyond_[i] += static_cast<double>(sent[lane]) *
+                    (shooter.area - arrived[static_cast<std::size_t>(lane)]) / N;
+    for (const SideIndex j : problem_.sides.active) {
+      if (received_[j].is_zero()) continue;
       const Spectrum<N> e = sent * received_[j];
       result_.indirect.irradiance.plain[j] += e;
       unshot_[j] += problem_.sides.reflectance[j] * e;
@@ -93,36 +95,50 @@ class ShootingSolver {
     }
   }
 
-  /// Exact factor from side j to the shooter times the share of it that a few shadow rays find
-  /// free, weighted with the kernel. Where nothing stands between, nothing is sampled: the factors
-  /// of a convex room sum to 1.
-  double factor(SideIndex j, const Patch& shooter, Counters& counters) const {
-    constexpr std::uint32_t kRays = 4;
-    const float sign = side_of(j) == scene::Side::Front ? 1.0f : -1.0f;
-    const float shooter_sign = shooter.back ? -1.0f : 1.0f;
-    double all = 0.0;
-    double free = 0.0;
-    for (std::uint32_t k = 0; k < kRays; ++k) {
-      scene::Sampler sampler(problem_.options.seed + shots_, j, k);
-      const scene::SurfacePoint p = problem_.points.sample(j / 2, sampler.next_2d());
-      const scene::SurfacePoint q =
-          sample_patch(problem_.shading.scene(), problem_.points, shooter, sampler.next_2d());
-      const Vec3f d = q.position - p.position;
-      const float here = sign * p.ng.dot(d);
-      const float there = -shooter_sign * q.ng.dot(d);
-      if (!(here > 0.0f) || !(there > 0.0f)) continue;
-      const float distance = d.norm();
-      const double kernel =
-          static_cast<double>(here * there) / std::pow(static_cast<double>(distance), 4);
-      all += kernel;
-      const Vec3f w = d / distance;
-      const scene::Ray ray{scene::offset_origin(p, w), w, 0.0f, distance * (1.0f - 1e-4f)};
-      free += kernel * static_cast<double>(
-                           problem_.shading.transmittance(ray, counters, Counter::RaysRow).mean());
+  /// Irradiance of every side per exitance of the shooter.
+  /// \param own  the shooter, if it is a side: an element sends nothing to itself.
+  /// \return  A F [m^2] from the shooter to all of them.
+  LaneValues<N> find_factors(const Patch& shooter, SideIndex own, int rays) {
+    const std::vector<SideIndex>& active = problem_.sides.active;
+    constexpr std::size_t kGrain = 256;
+    struct Part {
+      Counters counters;
+      LaneValues<N> arrived{};
+    };
+    std::vector<Part> parts((active.size() + kGrain - 1) / kGrain);
+    scene::parallel_for(active.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      Part& part = parts[begin / kGrain];
+      for (std::size_t k = begin; k < end; ++k) {
+        const SideIndex j = active[k];
+        received_[j] = {};
+        if (own != kNoSide && j / 2 == own / 2) continue;
+        const Patch receiver = element_patch(problem_.elements, j);
+        const LaneValues<N> af = exchange_area(j, receiver, shooter, rays, part.counters);
+        for (std::size_t lane = 0; lane < N; ++lane) {
+          part.arrived[lane] += af[lane];
+          received_[j][static_cast<int>(lane)] = static_cast<float>(af[lane] / receiver.area);
+        }
+      }
+    });
+    LaneValues<N> arrived{};
+    for (const Part& part : parts) {
+      counters_ += part.counters;
+      for (std::size_t lane = 0; lane < N; ++lane) arrived[lane] += part.arrived[lane];
     }
-    if (!(free > 0.0)) return 0.0;
-    const Patch receiver = element_patch(problem_.elements, j);
-    return free / all * unoccluded_exchange_area(receiver, shooter, false) / receiver.area;
+    ++shooters_;
+    return arrived;
+  }
+
+  /// Exact factor between side j and the shooter times the share of it that a few shadow rays find
+  /// free. Where nothing stands between, nothing is sampled: the factors of a convex room sum to 1.
+  LaneValues<N> exchange_area(SideIndex j, const Patch& receiver, const Patch& shooter, int rays,
+                              Counters& counters) const {
+    LaneValues<N> share =
+        visible_share(problem_, receiver, shooter, {problem_.options.seed + shooters_, j, rays}, counters);
+    if (share == LaneValues<N>{}) return share;
+    const double free = unoccluded_exchange_area(receiver, shooter, false);
+    for (double& s : share) s *= free;
+    return share;
   }
 
   /// What was not shot, spread over the sides that light reached, with its further bounces.
@@ -146,13 +162,39 @@ class ShootingSolver {
       if (!total_plain(result_, i).is_zero()) result_.indirect.irradiance.plain[i] += ambient;
   }
 
+  /// Flux that was shot and that no side received was counted shot by shot.
+  void balance() {
+    FluxBalance& f = result_.flux;
+    f = emission_balance(problem_, emitters_, trace_photons(problem_, work_, counters_));
+    const std::vector<Beyond> beyond = beyond_sides(problem_, work_, counters_);
+    double variance = f.standard_error * f.standard_error;
+    for (std::size_t k = 0; k < beyond.size(); ++k) {
+      const SideIndex i = problem_.sides.active[k];
+      const double area = static_cast<double>(problem_.area(i));
+      f.escaped += beyond_[i] * beyond[k].escaped;
+      f.absorbed += beyond_[i] * beyond[k].absorbed + area * absorbed_per_area(problem_, result_, i);
+      f.in_medium += beyond_[i] * beyond[k].in_medium;
+      variance += area * area * static_cast<double>(result_.direct.variance[i]);
+    }
+    f.standard_error = std::sqrt(variance);
+  }
+
+  static constexpr int kRays = 4;  ///< of a pair
+  /// What the air lets pass is a ratio of sums: of few rays it would be biased between near patches,
+  /// where short ways count most.
+  static constexpr int kRaysInAir = 16;
+
   const Problem<N>& problem_;
   Work& work_;
   Counters& counters_;
   Solution<N> result_;
-  SideValues<N> unshot_;         ///< radiosity that has not been sent
-  std::vector<float> received_;  ///< factors of the current shot
+  std::vector<Emitter<N>> emitters_;  ///< empty: sampled with the other lights
+  SideValues<N> unshot_;              ///< radiosity that has not been sent
+  SideValues<N> received_;            ///< irradiance per exitance of the current shooter
+  std::vector<double> beyond_;        ///< by side: flux, lane mean, that no side received
+  int rays_;  ///< of a pair
   std::size_t shots_ = 0;
+  std::size_t shooters_ = 0;  ///< emitters included
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "error_control.h"
+#include "scene/archive.h"
 #include "solvers.h"
+#include "view_importance.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -18,38 +20,109 @@ struct GroupLight {
   SideValues<N> bounced;        ///< exchange irradiance of the rows' solution, later a better one
   bool refined = false;         ///< is it better?
   SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
-  std::optional<Smoothing<N>> smoothing;  ///< by the noise of the rows
-  SideValues<N> seen;                     ///< bounced, smoothed: what fresh rays read
+  SideValues<N> seen;           ///< bounced, smoothed: what fresh rays read beside the source
+  SideValues<N> read;           ///< what the fresh rays so far have read, or as if they had
+  std::optional<Smoothing<N>> smoothing;       ///< that made `seen`
+  std::optional<Smoothing<N>> next_smoothing;  ///< that made `indirect`
 };
 
+/// Samples per replicate that a side has to get to; may be asked for any number of times.
+struct Goal {
+  SideIndex side;
+  std::uint32_t until;
+};
+template <int N>
+std::vector<Goal> goals_of(const std::vector<Draw>& plan, const Tally<N>& tally) {
+  std::vector<Goal> goals;
+  for (const Draw& d : plan) goals.push_back({d.side, tally.drawn(d.side) + d.more});
+  return goals;
+}
+template <int N>
+std::vector<Draw> missing(const std::vector<Goal>& goals, const Tally<N>& tally) {
+  std::vector<Draw> plan;
+  for (const Goal& g : goals)
+    if (g.until > tally.drawn(g.side)) plan.push_back({g.side, g.until - tally.drawn(g.side)});
+  return plan;
+}
+
+/// What is being done. A stage that was interrupted is taken up again from what was drawn.
+enum class Stage : std::uint8_t { Light, Rows, FirstGather, Gather, RoundLight, RoundGather };
+
+/// Solves by rows, in stages. An interrupt leaves the state in which a later solver gets to the same
+/// bits: every decision depends on samples that were complete when it was made, or is remembered.
 template <int N>
 class RowSolver {
  public:
-  RowSolver(const Problem<N>& problem, Tally<N> direct, Work& work, Counters& counters)
+  RowSolver(const Problem<N>& problem, Work& work, Counters& counters)
       : problem_(problem),
         work_(work),
         counters_(counters),
         result_(problem),
         neighbours_(problem.elements.layout),
         groups_(problem.group_count()),
-        direct_(direct.groups() > 0 ? std::move(direct)
-                                    : Tally<N>(problem.side_count(), problem.group_count(),
-                                               problem.sides.any_coupled)),
+        direct_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         gathered_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         exposed_(problem.side_count(), 1.0f),
         mixed_(problem.side_count(), 0) {}
 
+  /// Takes over where another solver of the same elements was.
+  /// \param same_light  false: reflectances have changed since; then what does not depend on them.
+  void restore(scene::ArchiveReader& reader, bool same_light) {
+    archive(reader);
+    if (!consistent()) reader.damaged();
+    result_.iteration = restored_iteration_;
+    iterations_before_assembly_ = result_.iteration.iterations;
+    if (stage_ <= Stage::Rows) {
+      // These follow from rows that are traced again.
+      exposed_.assign(problem_.side_count(), 1.0f);
+      mixed_.assign(problem_.side_count(), 0);
+      result_.valid = problem_.sides.is_active;
+      groups_.assign(groups_.size(), GroupLight<N>());
+      result_.iteration = {};
+      if (!same_light) forget_reflected();
+      return;
+    }
+    if (!same_light && hot_reflectance_ != hot_reflectance()) {
+      // What rays found of hot patches by chance is in the rows.
+      forget_reflected();
+      stage_ = Stage::Rows;
+      return;
+    }
+    work_.begin("rows", 0.4);
+    if (rows_.rays.empty()) trace_again();
+    take_direct();
+    if (same_light) return;
+    forget_reflected();
+    solve_bounces();
+    stage_ = Stage::FirstGather;
+  }
+
   Solution<N> solve() {
-    work_.begin("direct light", 0.15);
-    draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
-    work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
-    photons_ = trace_photons(problem_, work_, counters_);
-    build_rows();
+    work_.memory().hold(MemoryBudget::Part::Samples,
+                        direct_.bytes() + shot_.bytes() + gathered_.bytes());
+    if (stage_ == Stage::Light) {
+      work_.begin("direct light", 0.15);
+      draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
+      work_.begin(problem_.specular ? "caustics" : "flux balance",
+                  problem_.specular ? 0.3 : 0.17);
+      photons_ = trace_photons(problem_, work_, counters_);
+      (void)paused(Stage::Light);
+    }
+    if (stage_ <= Stage::Rows) build_rows();
     work_.begin("gathering", 0.98);
-    gather_twice(by_error() ? kPilot : problem_.options.gather_rays);
+    if (stage_ < Stage::RoundLight)
+      gather_twice(by_error() ? kPilot : problem_.options.gather_rays);
+    else if (finish_round())
+      ++round_;
+    else
+      assemble();
     if (by_error()) reach_error();
+    if (!work_.stopped()) round_ = 0;
+    keep();
+    result_.state = std::move(state_);
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
+    hand_over_groups();
     return std::move(result_);
   }
 
@@ -65,7 +138,7 @@ class RowSolver {
     draw_direct(top_up(problem_, direct_, sides, samples));
   }
   void draw_direct(const std::vector<Draw>& plan) {
-    sample_direct(problem_, DirectLights::All, mixed_, plan, direct_, work_, counters_);
+    sample_direct(problem_, Purpose::Count, DirectLights::All, mixed_, plan, direct_, work_, counters_);
   }
   void draw_hot(const std::vector<Draw>& plan) {
     sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
@@ -73,28 +146,211 @@ class RowSolver {
 
   void draw_gather(const std::vector<Draw>& plan) {
     std::vector<SideValues<N>> field;
-    for (const GroupLight<N>& g : groups_) {
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      const GroupLight<N>& g = groups_[n];
       field.push_back(g.source);
       for (const SideIndex i : problem_.sides.active) field.back()[i] += g.seen[i];
+      bring_up_to_date(n, field.back());
     }
     sample_gather(problem_, field, hot_, plan, gathered_, work_, counters_);
+  }
+
+  /// The samples so far have read another field: the rows say what the difference makes. So no
+  /// sample is lost when the field gets better, and none keeps what was wrong with the older one.
+  void bring_up_to_date(std::size_t group, const SideValues<N>& field) {
+    GroupLight<N>& g = groups_[group];
+    if (!g.read.empty()) {
+      const SideValues<N> d = hot_.without_hot(minus(field, g.read));
+      SideValues<N> b(problem_.side_count());
+      for (const SideIndex i : problem_.sides.active)
+        b[i] = leaving(problem_.sides, i, d[i], d[i ^ 1U]);
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const SideIndex i = problem_.sides.active[k];
+        if (rows_.rays[k] == 0 || gathered_.valid(i) == 0) continue;
+        const float per_ray = 1.0f / static_cast<float>(rows_.rays[k]);
+        const Spectrum<N> plain = rows_.apply(k, b, false) * per_ray;
+        gathered_.shift(i, group, plain,
+                        problem_.sides.any_coupled ? rows_.apply(k, b, true) * per_ray : plain);
+      }
+    }
+    g.read = field;
   }
 
   /// A quarter of the rays against the rows' field, the rest against the one that these make of it:
   /// the rows' own noise would stay in the second bounce otherwise. Few rays are not worth it.
   void gather_twice(int rays) {
     constexpr int kWorthwhile = 64;
-    const std::vector<SideIndex> lit = lit_sides();
-    if (rays >= kWorthwhile) {
-      draw_gather(top_up(problem_, gathered_, lit, rays / 4));
-      assemble();
-      std::vector<Draw> rest = top_up(problem_, gathered_, lit, rays);
-      refine_field(rest);
-      draw_gather(rest);
-    } else {
-      draw_gather(top_up(problem_, gathered_, lit, rays));
+    if (stage_ < Stage::Gather) {
+      const std::vector<SideIndex> lit = lit_sides();
+      if (rays >= kWorthwhile) {
+        draw_gather(top_up(problem_, gathered_, lit, rays / 4, importance_));
+        const bool stop = paused(Stage::FirstGather);
+        assemble();
+        if (stop || paused(Stage::FirstGather)) return;
+      }
+      if (rays >= kWorthwhile) refine_field();
+      gather_goals_ = goals_of(top_up(problem_, gathered_, lit, rays, importance_), gathered_);
     }
+    draw_gather(missing(gather_goals_, gathered_));
+    (void)paused(Stage::Gather);
     assemble();
+    (void)paused(Stage::Gather);
+  }
+
+  /// Says what is being done. \return  true if the work is to stop here; then what is known now is
+  /// kept for later.
+  bool paused(Stage stage) {
+    stage_ = stage;
+    if (work_.stopped()) keep();
+    return work_.stopped();
+  }
+  void keep() {
+    if (problem_.options.keep == Keep::Nothing || !state_.empty() || !caught_up_) return;
+    scene::ArchiveWriter writer;
+    hot_reflectance_ = hot_reflectance();
+    archive(writer);
+    state_ = std::move(writer.bytes);
+  }
+
+  /// One list for both directions.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(stage_);
+    a(round_);
+    // Whoever goes on assembles again.
+    Iteration iteration = result_.iteration;
+    iteration.iterations = iterations_before_assembly_;
+    a(iteration.iterations);
+    a(iteration.residual);
+    a(iteration.converged);
+    auto trapped = static_cast<std::uint64_t>(iteration.trapped);
+    a(trapped);
+    iteration.trapped = trapped;
+    restored_iteration_ = iteration;
+    direct_.archive(a);
+    shot_.archive(a);
+    gathered_.archive(a);
+    a(direct_goals_);
+    a(shot_goals_);
+    a(gather_goals_);
+    a(hot_chosen_);
+    a(hot_light_known_);
+    hot_.archive(a);
+    a(hot_reflectance_);
+    a(exposed_);
+    a(mixed_);
+    a(result_.valid);
+    photons_.caustic.resize(groups_.size());
+    for (Estimate<N>& e : photons_.caustic) {
+      a(e.irradiance.plain);
+      a(e.irradiance.body);
+      a(e.variance);
+    }
+    for (auto* v : {&photons_.escaped, &photons_.absorbed, &photons_.in_medium, &photons_.variance})
+      a(*v);
+    a(photons_.count);
+    for (GroupLight<N>& g : groups_) {
+      for (auto* v : {&g.source, &g.bounced, &g.seen, &g.read, &g.solved_source, &g.solved_shot}) a(*v);
+      a(g.refined);
+      std::vector<float> weights;
+      if (g.smoothing) weights = g.smoothing->weights();
+      a(weights);
+      if (!g.smoothing && !weights.empty()) smoothing_from(std::move(weights), g);
+    }
+    archive_rows(a);
+  }
+
+  void smoothing_from(std::vector<float> weights, GroupLight<N>& g) const {
+    try {
+      g.smoothing.emplace(problem_, neighbours_, std::move(weights));
+    } catch (const std::invalid_argument&) {
+      // Not of these sides; consistent() finds it missing.
+    }
+  }
+
+  /// The rows, or how many rays each had: then they are traced again.
+  template <class Archive>
+  void archive_rows(Archive& a) {
+    std::vector<std::uint32_t> traced;
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      traced.push_back(rows_.rays[k] + rows_.dropped[k]);
+    a(traced);
+    traced_ = std::move(traced);
+    bool stored = problem_.options.keep == Keep::Rows && stage_ > Stage::Rows;
+    a(stored);
+    if (!stored) return;
+    a(rows_.first);
+    a(rows_.entries);
+    a(rows_.spectral);
+    a(rows_.rays);
+    a(rows_.dropped);
+    a(rows_.escaped);
+    a(rows_.in_medium);
+    a(rows_.hot);
+    rows_.groups = hot_.groups();
+  }
+
+  /// Can what was read be of this problem? Indices are used without checks later.
+  [[nodiscard]] bool consistent() const {
+    const std::size_t n = problem_.side_count();
+    const bool body = problem_.sides.any_coupled;
+    bool ok = stage_ <= Stage::RoundGather &&
+              direct_.is_for(n, groups_.size(), body) &&
+              shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
+              exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n;
+    const auto in_range = [n](SideIndex i) { return i < n; };
+    for (const auto* goals : {&direct_goals_, &shot_goals_, &gather_goals_})
+      for (const Goal& g : *goals) ok = ok && in_range(g.side);
+    ok = ok && hot_.is_for(n, groups_.size());
+    if (!ok || stage_ <= Stage::Rows) return ok;
+    ok = traced_.size() == problem_.sides.active.size();
+    for (const Estimate<N>& e : photons_.caustic)
+      ok = ok && e.irradiance.plain.size() == n && e.variance.size() == n &&
+           e.irradiance.body.size() == (body ? n : 0);
+    for (const GroupLight<N>& g : groups_) {
+      for (const auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot})
+        ok = ok && v->size() == n;
+      ok = ok && g.smoothing && (g.read.empty() || g.read.size() == n);
+    }
+    return ok && (rows_.rays.empty() || rows_.is_for(n, problem_.sides.active.size()));
+  }
+
+  /// The same rays as before, in the same rounds.
+  void trace_again() {
+    const int all = std::max(1, problem_.options.row_rays);
+    for (int from = 0, to = std::min(kPilot, all); from < all;
+         from = to, to = std::min(2 * to, all)) {
+      std::vector<std::uint8_t> wanted;
+      for (const std::uint32_t rays : traced_)
+        wanted.push_back(static_cast<int>(rays) >= to ? 1 : 0);
+      rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
+    }
+    caught_up_ = !work_.stopped();
+  }
+
+  [[nodiscard]] std::vector<float> hot_reflectance() const {
+    std::vector<float> all;
+    for (const SideIndex i : hot_.sides()) {
+      const Spectrum<N>& rho = problem_.sides.reflectance[i];
+      all.insert(all.end(), rho.lane.begin(), rho.lane.end());
+    }
+    return all;
+  }
+
+  /// What depends on reflectances. Which patches are hot does not matter to the result, and their
+  /// light straight from the lights is what it was.
+  void forget_reflected() {
+    const auto empty = [&] {
+      return Tally<N>(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
+    };
+    if (hot_reflectance_ != hot_reflectance()) shot_ = empty();
+    gathered_ = empty();
+    for (GroupLight<N>& g : groups_) g = GroupLight<N>();
+    if (stage_ > Stage::Rows) take_direct();
+    round_ = 0;
+    direct_goals_.clear();
+    shot_goals_.clear();
+    gather_goals_.clear();
   }
 
   /// A first round of rays for every side; more where it found light. A side that sees only dark
@@ -105,16 +361,19 @@ class RowSolver {
     const std::size_t n = problem_.sides.active.size();
     work_.begin("rows", 0.4);
     take_direct();
-    hot_ = HotPatches<N>(problem_, sources());
+    if (!hot_chosen_) choose_hot();
     know_hot_light();
     rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
                           counters_);
     find_buried();
     draw_direct_of_mixed();
     take_direct();
+    importance_ = view_importance(problem_, rows_, counters_);
     draw_hot(top_up(problem_, shot_, problem_.sides.active,
-                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2)));
+                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2),
+                    importance_));
     solve_bounces();
+    (void)paused(Stage::Rows);
     if (first == all) return;
     work_.begin("rows", 0.6);
     for (int from = first, to = 2 * first; from < all; from = to, to *= 2) {
@@ -122,11 +381,45 @@ class RowSolver {
       std::vector<std::uint8_t> wanted(n, 0);
       for (std::size_t k = 0; k < n; ++k) {
         const SideIndex i = problem_.sides.active[k];
-        wanted[k] = is_lit(i) && samples_at_level(all, problem_.level(i)) >= to ? 1 : 0;
+        wanted[k] = is_lit(i) && samples_of(problem_, importance_, i, all) >= to ? 1 : 0;
+      }
+      if (!memory_holds(wanted, to - from)) {
+        work_.memory().give_up("rows of " + std::to_string(from) + " rays instead of " +
+                               std::to_string(all));
+        break;
       }
       rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
     }
     solve_bounces();
+    (void)paused(Stage::Rows);
+  }
+
+  [[nodiscard]] bool memory_holds(const std::vector<std::uint8_t>& wanted, int rays) const {
+    const auto rows = static_cast<std::uint64_t>(std::count(wanted.begin(), wanted.end(), 1));
+    return bytes_for_rows<N>(rows_.bytes(), rows * static_cast<std::uint64_t>(rays)) <=
+           work_.memory().room(MemoryBudget::Part::Rows);
+  }
+
+  /// By samples of their own.
+  void choose_hot() {
+    constexpr int kFew = 8;
+    Tally<N> pilot(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
+    if (!sample_direct(problem_, Purpose::Decide, DirectLights::All, {},
+                       top_up(problem_, pilot, problem_.sides.active, kFew), pilot, work_,
+                       counters_)) {
+      (void)paused(Stage::Rows);
+      return;
+    }
+    std::vector<SideValues<N>> source;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      source.emplace_back(problem_.side_count());
+      for (const SideIndex i : problem_.sides.active)
+        source[g][i] =
+            (problem_.sides.coupled[i / 2] != 0 ? pilot.mean_body(i, g) : pilot.mean(i, g)) +
+            exchange(problem_, groups_[g].caustic, i);
+    }
+    hot_ = HotPatches<N>(problem_, std::move(source));
+    hot_chosen_ = true;
   }
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
@@ -134,31 +427,36 @@ class RowSolver {
   void know_hot_light() {
     constexpr int kFirst = 256;
     constexpr int kMost = 65536;
-    if (hot_.empty()) return;
+    if (hot_.empty() || hot_light_known_) return;
     const double allowed = by_error() ? std::pow(0.25 * problem_.options.error, 2) : 1.0;
     for (int samples = kFirst; samples <= kMost && !work_.stopped(); samples *= 2) {
-      std::vector<Draw> plan;
-      for (const SideIndex i : hot_.sides())
-        plan.push_back({i, static_cast<std::uint32_t>(samples / kReplicates)});
-      draw_direct(plan);
+      const auto until = static_cast<std::uint32_t>((2 * samples - kFirst) / kReplicates);
+      std::vector<Goal> goals;
+      bool beyond = false;  // then this was not enough when it was asked before
+      for (const SideIndex i : hot_.sides()) {
+        goals.push_back({i, until});
+        beyond = beyond || direct_.drawn(i) > until;
+      }
+      draw_direct(missing(goals, direct_));
       take_direct();
       hot_.set_source(sources());
-      if (hot_flux_variance() <= allowed) return;
+      if (!beyond && hot_flux_variance() <= allowed) break;
     }
+    hot_light_known_ = !work_.stopped();
   }
 
   /// Relative variance of the whole flux that hot patches reflect first.
-  [[nodiscard]] double hot_flux_variance() const {
+  [[nodiscard]] double hot_flux_variance(GroupChoice group = kAllGroups) const {
     double flux = 0.0;
     double variance = 0.0;
     for (const SideIndex i : hot_.sides()) {
       const double scale = static_cast<double>(problem_.area(i)) *
                            static_cast<double>(problem_.sides.reflectance[i].mean());
       double direct = 0.0;
-      for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t g = first_of(group); g < end_of(group); ++g)
         direct += static_cast<double>(hot_.source(i, g).mean());
       flux += scale * direct;
-      variance += scale * scale * direct_.variance(i);
+      variance += scale * scale * (group ? direct_.variance(i, *group) : direct_.variance(i));
     }
     return flux > 0.0 ? variance / (flux * flux) : 0.0;
   }
@@ -237,7 +535,8 @@ class RowSolver {
         g.bounced.resize(problem_.side_count());
         const Iteration it = solve_rows(problem_, rows_, source, shot, g.bounced, work_);
         if (it.iterations >= slowest.iterations) slowest = it;
-        smooth(g, row_variances(g));
+        g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, row_variances(g));
+        g.seen = (*g.smoothing)(g.bounced);
       } else {
         SideValues<N> change(problem_.side_count());
         const Iteration it = solve_rows(problem_, rows_, minus(source, g.solved_source),
@@ -254,28 +553,18 @@ class RowSolver {
     }
     slowest.iterations += result_.iteration.iterations;
     result_.iteration = slowest;
+    iterations_before_assembly_ = slowest.iterations;
   }
 
-  void smooth(GroupLight<N>& g, const std::vector<double>& variance) const {
-    g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, variance);
-    g.seen = (*g.smoothing)(g.bounced);
-  }
-
-  /// What samples found is a better field than the rows' for the next samples to read. Where their
-  /// number doubles at least they are all drawn anew against it.
-  void refine_field(std::vector<Draw>& plan) {
-    const std::vector<double> variance = indirect_variances();
+  /// What samples found is a better field than the rows' for the next samples to read.
+  void refine_field() {
+    iterations_before_assembly_ = result_.iteration.iterations;
     for (GroupLight<N>& g : groups_) {
       for (const SideIndex i : problem_.sides.active)
         g.bounced[i] = exchange(problem_, g.indirect, i);
-      smooth(g, variance);
+      g.seen = g.bounced;
+      g.smoothing = g.next_smoothing;
       g.refined = true;
-    }
-    for (Draw& d : plan) {
-      const std::uint32_t have = gathered_.valid(d.side) / kReplicates;
-      if (d.more < have) continue;  // a few more go to what there is
-      d.more += have;
-      gathered_.drop_sums(d.side);
     }
   }
 
@@ -302,11 +591,12 @@ class RowSolver {
   /// Fresh rays against the smoothed solution, pooled with the rows' own estimate against it; what
   /// that changes is propagated through the rows once more, as a smooth field again.
   void assemble() {
+    iterations_before_assembly_ = result_.iteration.iterations;
     for (std::size_t g = 0; g < groups_.size(); ++g) pool(g);
-    sum_groups();
     estimate_variance();
-    for (GroupLight<N>& g : groups_) propagate(g);
+    for (std::size_t g = 0; g < groups_.size(); ++g) propagate(g);
     sum_groups();
+    estimate_error();
   }
 
   void pool(std::size_t group) {
@@ -316,17 +606,18 @@ class RowSolver {
     for (std::size_t k = 0; k < rows_.size(); ++k) pool(k, group, b);
   }
 
-  [[nodiscard]] std::vector<double> indirect_variances() const {
-    return {result_.indirect.variance.begin(), result_.indirect.variance.end()};
-  }
-
-  void propagate(GroupLight<N>& g) {
+  void propagate(std::size_t group) {
+    GroupLight<N>& g = groups_[group];
     SideValues<N> difference(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       difference[i] = exchange(problem_, g.indirect, i);
-    const Smoothing<N> smoothing(problem_, neighbours_, difference, indirect_variances());
-    difference = smoothing(difference);
-    for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
+    g.next_smoothing =
+        Smoothing<N>(problem_, neighbours_, difference, group_variances_[group].own);
+    const Smoothing<N>& smoothing = *g.next_smoothing;
+    g.indirect.plain = smoothing(g.indirect.plain);
+    if (problem_.sides.any_coupled) g.indirect.body = smoothing(g.indirect.body);
+    for (const SideIndex i : problem_.sides.active)
+      difference[i] = exchange(problem_, g.indirect, i) - g.seen[i];
     const SideValues<N> none(problem_.side_count());
     SideValues<N> change(problem_.side_count());
     const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
@@ -383,35 +674,47 @@ class RowSolver {
     sum(&GroupLight<N>::indirect, result_.indirect);
   }
 
-  void estimate_variance() {
-    const std::vector<double> direct =
-        sample_variance(problem_, neighbours_, direct_, Samples::All);
-    const std::vector<double> fresh =
-        sample_variance(problem_, neighbours_, gathered_, Samples::All);
-    const std::vector<double> shot = sample_variance(problem_, neighbours_, shot_, Samples::All);
+  /// By side.
+  struct Variances {
+    std::vector<float> direct, caustic;
+    std::vector<double> own;     ///< of indirect light, by a side's own rays
+    std::vector<double> shared;  ///< of indirect light, by what neighbours see as well
+  };
+
+  /// Variances of the means of one group, or of the sum of all.
+  [[nodiscard]] Variances variances(GroupChoice group) const {
+    const auto of = [&](const Tally<N>& tally) {
+      return sample_variance(problem_, neighbours_, tally, Samples::All, group);
+    };
+    const std::vector<double> direct = of(direct_);
+    const std::vector<double> fresh = of(gathered_);
+    const std::vector<double> shot = of(shot_);
+    const std::vector<float> none(problem_.side_count(), 0.0f);
+    const std::vector<double> nought(problem_.side_count(), 0.0);
+    Variances v{none, none, nought, nought};
     std::vector<double> total(problem_.side_count(), 0.0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
       const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
       const double n = direct_.valid(i);
-      result_.direct.variance[i] =
-          static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
-      result_.caustic.variance[i] = exposed * exposed * caustic_variance(i);
+      v.direct[i] = static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
+      v.caustic[i] = exposed * exposed * caustic_variance(i, group);
       const double shots = shot_.valid(i);
-      result_.indirect.variance[i] =
-          static_cast<float>(indirect_variance(k, fresh[i]) +
-                             (shots > 0.0 ? shot[i] / shots : 0.0));
-      total[i] = static_cast<double>(result_.direct.variance[i]) +
-                 static_cast<double>(result_.caustic.variance[i]) +
-                 static_cast<double>(result_.indirect.variance[i]);
+      v.own[i] =
+          indirect_variance(k, fresh[i], group) + (shots > 0.0 ? shot[i] / shots : 0.0);
+      float seen = 0.0f;
+      for (std::size_t g = first_of(group); g < end_of(group); ++g)
+        seen = std::max(seen, groups_[g].smoothing->gain()[i]);
+      total[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.caustic[i]) +
+                 static_cast<double>(seen) * v.own[i];
     }
-    const double common = hot_flux_variance();
+    const double common = hot_flux_variance(group);
     if (common > 0.0)
       for (const SideIndex i : problem_.sides.active) {
         double first = 0.0;
-        for (std::size_t g = 0; g < groups_.size(); ++g)
+        for (std::size_t g = first_of(group); g < end_of(group); ++g)
           first += static_cast<double>(shot_.mean(i, g).mean());
-        result_.indirect.variance[i] += static_cast<float>(common * first * first);
+        v.shared[i] += common * first * first;
       }
     // The errors of what a side sees reach it too, as far as they do not average out.
     std::vector<double> leaving_variance(problem_.side_count(), 0.0);
@@ -421,29 +724,91 @@ class RowSolver {
       leaving_variance[i] = rho * rho * total[i] + tau * tau * total[i ^ 1U];
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      result_.indirect.variance[problem_.sides.active[k]] +=
-          static_cast<float>(rows_.apply_squared(k, leaving_variance));
+      v.shared[problem_.sides.active[k]] += rows_.apply_squared(k, leaving_variance);
+    return v;
+  }
+  [[nodiscard]] static std::size_t first_of(GroupChoice group) { return group.value_or(0); }
+  [[nodiscard]] std::size_t end_of(GroupChoice group) const {
+    return group ? *group + 1 : groups_.size();
+  }
+
+  void estimate_variance() {
+    group_variances_.clear();
+    for (std::size_t g = 0; g < groups_.size(); ++g) group_variances_.push_back(variances(g));
+  }
+
+  /// Variance of the smoothed indirect light.
+  [[nodiscard]] static std::vector<float> smoothed(const Variances& v,
+                                                   const std::vector<float>& gain) {
+    std::vector<float> result(v.own.size());
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] = static_cast<float>(static_cast<double>(gain[i]) * v.own[i] + v.shared[i]);
+    return result;
+  }
+
+  void estimate_error() {
+    if (groups_.size() == 1) {
+      gain_ = groups_[0].next_smoothing->gain();
+    } else {
+      gain_.assign(problem_.side_count(), 1.0f);
+      for (const SideIndex i : problem_.sides.active) {
+        double all = 0.0;
+        double left = 0.0;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+          all += group_variances_[g].own[i];
+          left += group_variances_[g].own[i] *
+                  static_cast<double>(groups_[g].next_smoothing->gain()[i]);
+        }
+        if (all > 0.0) gain_[i] = static_cast<float>(left / all);
+      }
+    }
+    const Variances v = groups_.size() == 1 ? group_variances_[0] : variances(kAllGroups);
+    result_.indirect.variance = smoothed(v, gain_);
+    result_.direct.variance = v.direct;
+    result_.caustic.variance = v.caustic;
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    weights_ = error_weights(problem_, irradiance);
+    weights_ = error_weights(problem_, irradiance, counting_share());
     result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
                                        weighted(result_.caustic.variance) +
                                        weighted(result_.indirect.variance));
   }
 
-  [[nodiscard]] float caustic_variance(SideIndex i) const {
+  /// Share of a side's area that counts: what lies outside closed bodies, by importance.
+  [[nodiscard]] std::vector<float> counting_share() const {
+    std::vector<float> share = exposed_;
+    if (!importance_.empty())
+      for (const SideIndex i : problem_.sides.active) share[i] *= importance_[i];
+    return share;
+  }
+
+  /// Every group's part, for whoever dims the lights later.
+  void hand_over_groups() {
+    if (groups_.size() < 2) return;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      Variances& v = group_variances_[g];
+      for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
+      result_.groups.push_back({std::move(groups_[g].direct), std::move(groups_[g].caustic),
+                                std::move(groups_[g].indirect), std::move(v.direct),
+                                smoothed(v, groups_[g].next_smoothing->gain())});
+    }
+  }
+
+  [[nodiscard]] float caustic_variance(SideIndex i, GroupChoice group) const {
     float sum = 0.0f;
-    for (const Estimate<N>& e : photons_.caustic) sum += e.variance[i];
+    for (std::size_t g = first_of(group); g < end_of(group); ++g)
+      sum += photons_.caustic[g].variance[i];
     return sum;
   }
 
   /// \param fresh  variance of one fresh ray.
-  [[nodiscard]] double indirect_variance(std::size_t k, double fresh) const {
+  [[nodiscard]] double indirect_variance(std::size_t k, double fresh, GroupChoice group) const {
     const double share = static_cast<double>(fresh_share(k));
     const double n = gathered_.valid(problem_.sides.active[k]);
     if (n > 0.0) return share * fresh / n;
     double sum = 0.0;
-    for (const GroupLight<N>& g : groups_) sum += row_variance(k, g);
+    for (std::size_t g = first_of(group); g < end_of(group); ++g)
+      sum += row_variance(k, groups_[g]);
     return sum;
   }
 
@@ -484,43 +849,79 @@ class RowSolver {
   /// Rounds of samples where they count most, until the estimate is below what was asked for.
   void reach_error() {
     constexpr int kMaxRounds = 32;
+    for (; round_ < kMaxRounds; ++round_) {
+      result_.error_reached = result_.error_estimate <= problem_.options.error;
+      if (result_.error_reached || work_.stopped()) return;
+      if (!plan_round() || !finish_round()) break;
+    }
+    result_.error_reached = result_.error_estimate <= problem_.options.error;
+  }
+
+  /// Says what the next round has to draw; false if nothing.
+  bool plan_round() {
     constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
     constexpr double kMargin = 0.95;        // a last round for little is dear
     const double target = problem_.options.error;
-    for (int round = 0; round < kMaxRounds; ++round) {
-      result_.error_reached = result_.error_estimate <= target;
-      if (result_.error_reached || work_.stopped()) return;
-      const double fixed = weighted(result_.caustic.variance);
-      if (fixed > 0.5 * target * target && !more_photons()) return;
-      const std::vector<Stratum<N>> strata{
-          {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
-           kShadowRayCost},
-          {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours),
-           1.0},
-          {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
-           kShadowRayCost}};
-      auto plans = plan_samples(problem_, weights_, strata, kMargin * target / result_.error_estimate);
-      if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !(fixed > 0.5 * target * target)) return;
-      refine_field(plans[1]);
-      work_.begin("direct light", 0.98);
-      draw_direct(plans[0]);
-      take_direct();
-      draw_hot(plans[2]);
-      solve_bounces();
-      work_.begin("gathering", 0.98);
-      draw_gather(plans[1]);
-      assemble();
-    }
-    result_.error_reached = result_.error_estimate <= target;
+    const double fixed = weighted(result_.caustic.variance);
+    const bool photons = fixed > 0.5 * target * target;
+    if (photons && !more_photons()) return false;
+    const auto left = [&](const Tally<N>& tally) {
+      std::vector<double> variance =
+          sample_variance(problem_, neighbours_, tally, Samples::Neighbours);
+      for (const SideIndex i : problem_.sides.active)
+        variance[i] *= static_cast<double>(gain_[i]);
+      return variance;
+    };
+    const std::vector<Stratum<N>> strata{
+        {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
+         kShadowRayCost},
+        {&gathered_, left(gathered_), 1.0},
+        {&shot_, left(shot_), kShadowRayCost}};
+    auto plans =
+        plan_samples(problem_, weights_, exposed_, strata, kMargin * target / result_.error_estimate);
+    if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
+    refine_field();
+    direct_goals_ = goals_of(plans[0], direct_);
+    gather_goals_ = goals_of(plans[1], gathered_);
+    shot_goals_ = goals_of(plans[2], shot_);
+    stage_ = Stage::RoundLight;
+    return true;
   }
 
-  /// Twice as many photons, all of them new. False at the end of their numbers.
+  /// Draws what is missing to the round. False if stopped; then the result is that of before.
+  bool finish_round() {
+    if (stage_ == Stage::RoundLight) {
+      work_.begin("direct light", 0.98);
+      draw_direct(missing(direct_goals_, direct_));
+      draw_hot(missing(shot_goals_, shot_));
+      if (paused(Stage::RoundLight)) return false;
+      const std::vector<GroupLight<N>> before = groups_;
+      take_direct();
+      solve_bounces();
+      if (work_.stopped()) {
+        groups_ = before;
+        return !paused(Stage::RoundLight);
+      }
+    }
+    work_.begin("gathering", 0.98);
+    draw_gather(missing(gather_goals_, gathered_));
+    if (paused(Stage::RoundGather)) return false;
+    assemble();
+    return !paused(Stage::RoundGather);
+  }
+
+  /// Twice as many photons, all of them new. False if stopped or at the end of their numbers.
   bool more_photons() {
     const std::uint64_t next = photons_.count * 2;
-    if (next > 0xffffffffU) return false;
+    if (next > photons_that_fit<N>(work_.memory(), next)) return false;
     work_.begin("caustics", 0.98);
-    photons_ = trace_photons(problem_, next, work_, counters_);
-    return !work_.stopped();
+    Photons<N> photons = trace_photons(problem_, next, work_, counters_);
+    if (work_.stopped()) {
+      keep();
+      return false;
+    }
+    photons_ = std::move(photons);
+    return true;
   }
 
   const Problem<N>& problem_;
@@ -537,19 +938,35 @@ class RowSolver {
   HotPatches<N> hot_;
   std::vector<float> exposed_;   ///< by side: share of its area outside closed bodies
   std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
+  std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
   std::vector<double> weights_;  ///< of squared errors, by side
+  std::vector<Variances> group_variances_;
+  std::vector<float> gain_;  ///< by side: what smoothing leaves of the variance of its own rays
+
+  Stage stage_ = Stage::Light;
+  int round_ = 0;
+  std::vector<Goal> direct_goals_, shot_goals_, gather_goals_;
+  bool hot_chosen_ = false, hot_light_known_ = false;
+  std::vector<float> hot_reflectance_;  ///< that the solver before this one knew
+  std::vector<std::uint32_t> traced_;  ///< rays of each row of the solver before this one
+  bool caught_up_ = true;              ///< false: stopped before those were traced again
+  std::vector<char> state_;
+  int iterations_before_assembly_ = 0;
+  Iteration restored_iteration_;
 };
 
 }  // namespace
 
 template <int N>
-Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
+Solution<N> solve_with_rows(const Problem<N>& problem, Start start, Work& work,
                             Counters& counters) {
-  return RowSolver<N>(problem, std::move(direct), work, counters).solve();
+  RowSolver<N> solver(problem, work, counters);
+  if (start.state != nullptr) solver.restore(*start.state, start.same_light);
+  return solver.solve();
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Solution<N> solve_with_rows(const Problem<N>&, Tally<N>, Work&, Counters&);
+  template Solution<N> solve_with_rows(const Problem<N>&, Start, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -2,13 +2,24 @@
 
 #include "iterate.h"
 #include "passes.h"
+#include "scene/archive.h"
 
 namespace atrium::radiosity {
+
+/// One light group's part of a solution, with variances of its own.
+template <int N>
+struct GroupEstimate {
+  Irradiance<N> direct, caustic, indirect;
+  std::vector<float> light_variance;     ///< of direct and caustic
+  std::vector<float> indirect_variance;
+};
 
 /// What a solver hands over: irradiance by side and how it got there.
 template <int N>
 struct Solution {
   Estimate<N> direct, caustic, indirect;
+  std::vector<GroupEstimate<N>> groups;  ///< whose sum the estimates are; empty with one group
+  std::vector<char> state;  ///< to go on from, if SolveOptions::keep says so
   std::vector<std::uint8_t> valid;  ///< by side
   FluxBalance flux;
   Iteration iteration;
@@ -22,9 +33,15 @@ struct Solution {
         valid(problem.sides.is_active) {}
 };
 
-/// \param direct  light samples of the problem's sides that were drawn already.
+/// What is known before.
+struct Start {
+  scene::ArchiveReader* state = nullptr;  ///< Solution::state of the same elements
+  bool same_light = true;                 ///< false: reflectances have changed since
+};
+
+/// \throws Error  if the state is damaged.
 template <int N>
-[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Tally<N> direct, Work& work,
+[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Start start, Work& work,
                                           scene::Counters& counters);
 /// \throws Error  if the scene has specular surfaces or more sides than a dense matrix can hold.
 template <int N>
@@ -71,7 +88,19 @@ template <int N>
 [[nodiscard]] FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& solution,
                                        const Photons<N>& photons, const Rows<N>& rows);
 
-/// \throws Error  naming the solver if something mirrors, refracts or glosses or the air absorbs.
+/// Where the light of a side goes that no side receives, as shares of it.
+struct Beyond {
+  double escaped = 1.0;
+  double absorbed = 0.0;  ///< by surfaces without elements: black ones, and inner faces of bodies
+  double in_medium = 0.0;
+};
+/// For solvers that know from factors how much that is; what becomes of it is asked of hemisphere
+/// rays. By active side.
+template <int N>
+[[nodiscard]] std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work,
+                                               scene::Counters& counters);
+
+/// \throws Error  naming the solver if something mirrors, refracts or glosses.
 template <int N>
 void require_diffuse(const Problem<N>& problem, const char* solver);
 

@@ -51,6 +51,10 @@ class Tally {
         drawn_(sides, 0) {}
 
   [[nodiscard]] std::size_t groups() const { return groups_; }
+  [[nodiscard]] std::uint64_t bytes() const {
+    return bytes_of(plain_) + bytes_of(body_) + bytes_of(replicate_) + bytes_of(valid_) +
+           bytes_of(drawn_);
+  }
   /// Samples drawn so far in each replicate, valid or not.
   [[nodiscard]] std::uint32_t drawn(SideIndex i) const { return drawn_[i]; }
   [[nodiscard]] std::uint32_t valid(SideIndex i) const {
@@ -72,13 +76,18 @@ class Tally {
         replicate_[at][r] += sums.groups[g].replicate[r];
     }
   }
+  /// As if every sample of a side so far had been larger by this.
+  void shift(SideIndex i, std::size_t group, const Spectrum<N>& plain, const Spectrum<N>& body) {
+    const std::size_t at = group * sides_ + i;
+    const auto n = static_cast<float>(valid(i));
+    plain_[at] += n * plain;
+    if (!body_.empty()) body_[at] += n * body;
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      replicate_[at][r] += static_cast<float>(valid_[i][r]) * plain.mean();
+  }
   /// Starts a side again, from the first sample on.
   void forget(SideIndex i) {
-    drop_sums(i);
     drawn_[i] = 0;
-  }
-  /// Drops what was added for a side; its next samples are new ones all the same.
-  void drop_sums(SideIndex i) {
     valid_[i].fill(0);
     for (std::size_t g = 0; g < groups_; ++g) {
       plain_[g * sides_ + i] = {};
@@ -117,6 +126,23 @@ class Tally {
       for (std::size_t r = 0; r < kReplicates; ++r)
         sums[r] += static_cast<double>(replicate_[g * sides_ + i][r]);
     return variance_of_mean(sums, valid_[i]);
+  }
+
+  /// For both directions, see scene/archive.h.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(sides_);
+    a(groups_);
+    a(plain_);
+    a(body_);
+    a(replicate_);
+    a(valid_);
+    a(drawn_);
+  }
+  [[nodiscard]] bool is_for(std::size_t sides, std::size_t groups, bool body) const {
+    return sides_ == sides && groups_ == groups && plain_.size() == sides * groups &&
+           body_.size() == (body ? plain_.size() : 0) && replicate_.size() == plain_.size() &&
+           valid_.size() == sides && drawn_.size() == sides;
   }
 
  private:
@@ -197,16 +223,29 @@ bool draw_one_by_one(const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
   return seed ^ (purpose << 32) ^ (static_cast<std::uint64_t>(replicate + 1) << 56);
 }
 
-/// What is missing to `samples` of every side, in fours. Parts of a divided element need half as
-/// many at each level, for their errors count by their area.
+/// Samples of a side, given those of one that is not divided and counts fully: parts of a divided
+/// element need half as many at each level, for their errors count by their area, and sides that
+/// count less fewer, as the root of what their variance counts (Neyman).
+/// \param importance  by side, see view_importance.h; empty: all count fully.
+template <int N>
+[[nodiscard]] int samples_of(const Problem<N>& problem, const std::vector<float>& importance,
+                             SideIndex i, int samples) {
+  const int wanted = samples_at_level(samples, problem.level(i));
+  if (importance.empty() || importance[i] == 1.0f) return wanted;
+  return std::min(wanted,
+                  std::max(8, static_cast<int>(static_cast<float>(wanted) * std::sqrt(importance[i]))));
+}
+
+/// What is missing to `samples` of every side, in fours; see samples_of().
 template <int N>
 [[nodiscard]] std::vector<Draw> top_up(const Problem<N>& problem, const Tally<N>& tally,
-                                       const std::vector<SideIndex>& sides, int samples) {
+                                       const std::vector<SideIndex>& sides, int samples,
+                                       const std::vector<float>& importance = {}) {
   std::vector<Draw> plan;
   plan.reserve(sides.size());
   for (const SideIndex i : sides) {
     const auto wanted = static_cast<std::uint32_t>(
-        (samples_at_level(samples, problem.level(i)) + kReplicates - 1) / kReplicates);
+        (samples_of(problem, importance, i, samples) + kReplicates - 1) / kReplicates);
     if (wanted > tally.drawn(i)) plan.push_back({i, wanted - tally.drawn(i)});
   }
   return plan;

@@ -16,6 +16,11 @@ struct Chunk {
   std::vector<Spectrum<N>> spectral, hot;
   std::vector<std::uint32_t> counts, rays, dropped;
   std::vector<float> escaped, in_medium;
+
+  [[nodiscard]] std::uint64_t bytes() const {
+    return bytes_of(entries) + bytes_of(spectral) + bytes_of(hot) + bytes_of(counts) +
+           bytes_of(rays) + bytes_of(dropped) + bytes_of(escaped) + bytes_of(in_medium);
+  }
 };
 
 /// Finds the entry of a target in a row under construction: a hash table with linear probing.
@@ -230,7 +235,13 @@ Rows<N> trace_rows(const Problem<N>& problem, const HotPatches<N>& hot, Rows<N> 
   // Stopped early: the sides that were not reached keep the rows that they had.
   for (std::size_t b = 0; b < chunks.size(); ++b)
     if (chunks[b].counts.empty()) build(b * kGrain, std::min(sides, (b + 1) * kGrain), nullptr);
+  std::uint64_t in_chunks = 0;
+  for (const Chunk<N>& c : chunks) in_chunks += c.bytes();
+  work.memory().hold(MemoryBudget::Part::Rows, old.bytes() + in_chunks);
+  old = {};
   Rows<N> rows = join(chunks, kGrain, sides);
+  work.memory().hold(MemoryBudget::Part::Rows, in_chunks + rows.bytes());
+  work.memory().hold(MemoryBudget::Part::Rows, rows.bytes());
   rows.groups = hot.groups();
   return rows;
 }

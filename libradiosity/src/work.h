@@ -2,22 +2,30 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "memory_budget.h"
 #include "scene/control.h"
 #include "scene/counters.h"
 #include "scene/parallel.h"
 
 namespace atrium::radiosity {
 
-/// Progress, cancellation and the time limit of one solve. `share` of the whole that a pass covers
+/// Progress, cancellation, the limits of time and memory of one solve. `share` of the whole that a pass covers
 /// moves the reported fraction from where the pass before ended.
 class Work {
  public:
-  Work(const scene::Control& control, double time_limit)
-      : control_(control), time_limit_(time_limit), start_(std::chrono::steady_clock::now()) {}
+  /// \param time_limit  [s]. \param memory_limit  [bytes]. 0: none.
+  Work(const scene::Control& control, double time_limit, std::uint64_t memory_limit = 0)
+      : control_(control),
+        time_limit_(time_limit),
+        start_(std::chrono::steady_clock::now()),
+        memory_(memory_limit) {}
+
+  [[nodiscard]] MemoryBudget& memory() { return memory_; }
 
   [[nodiscard]] bool stopped() {
     if (!stopped_by_.empty()) return true;
@@ -65,6 +73,7 @@ class Work {
   const scene::Control& control_;
   double time_limit_;
   std::chrono::steady_clock::time_point start_;
+  MemoryBudget memory_;
   std::string stopped_by_, remark_;
   double from_ = 0.0, until_ = 0.0;
 };

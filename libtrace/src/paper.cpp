@@ -28,7 +28,7 @@ struct Branch {
 /// f(r) of the light over the physical 1/r^2 that the sampler has used.
 template <int N>
 float falloff_ratio(const scene::Scene& scene, const scene::LightSample<N>& s) {
-  if (!s.dirac || s.light >= scene.lights.size() || !(s.distance < 1e18f)) return 1.0f;
+  if (!s.dirac || s.source >= scene.lights.size() || !(s.distance < 1e18f)) return 1.0f;
   return std::visit(
       [&](const auto& light) {
         if constexpr (requires { light.falloff; }) {
@@ -39,7 +39,7 @@ float falloff_ratio(const scene::Scene& scene, const scene::LightSample<N>& s) {
           return 1.0f;
         }
       },
-      scene.lights[s.light].kind);
+      scene.lights[s.source].kind);
 }
 
 /// f(r) e^{-K r} of a reflected or transmitted ray that ended at this distance.

@@ -86,6 +86,73 @@ TEST(Solvers, Agree) {
   EXPECT_NEAR(f.absorbed + f.escaped, f.emitted, 1e-5 * f.emitted);
 }
 
+// Two plates and a lamp in the open. Fields in single precision and factors by two rules leave less
+// than 1e-5; what was not shot is in the balance as ambient light.
+TEST(Shooting, OpenSceneBalances) {
+  SceneMaker maker;
+  const auto white = maker.material(test::diffuse(0.6));
+  maker.quad(white, {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0});
+  maker.quad(white, {0, 0, 0}, {0, 2, 0}, {0, 2, 2}, {0, 0, 2});
+  maker.quad(maker.material(test::emitter(1.0, 0.6)), {1, 0.5f, 1.5f}, {1, 1.5f, 1.5f},
+             {2, 1.5f, 1.5f}, {2, 0.5f, 1.5f});
+  const Solved s(maker.take(), {.solver = Solver::Shooting, .element_size = 0.25});
+  const FluxBalance& f = s.result.flux;
+  EXPECT_NEAR(f.emitted, kPi, 1e-6);
+  RecordProperty("imbalance", std::to_string(1e9 * (f.absorbed + f.escaped - f.emitted) / f.emitted) + "e-9");
+  EXPECT_NEAR(f.absorbed + f.escaped, f.emitted, 1e-5 * f.emitted);
+  EXPECT_NEAR(f.escaped, 0.8085 * f.emitted, 0.003 * f.emitted);  // the solver 'matrix': 0.80847
+}
+
+// Cohen et al. 1988: what has not been shot, spread evenly as if it had been, makes a useful display
+// of a few shots. Elements in the plane of the only shooters have received nothing else.
+TEST(Shooting, AmbientTermAnticipatesWhatIsToCome) {
+  const auto solved = [](double tolerance) {
+    SceneMaker maker;
+    const auto white = maker.material(test::diffuse(0.8));
+    maker.room({0, 0, 0}, {3, 3, 2},
+               {white, white, white, white, maker.material(test::diffuse(0.4)), white});
+    const auto lamp = maker.material(test::emitter(10.0, 0.5));
+    maker.quad(lamp, {1, 1, 1.9f}, {1, 2, 1.9f}, {2, 2, 1.9f}, {2, 1, 1.9f});
+    return Solved(maker.take(),
+                  {.solver = Solver::Shooting, .element_size = 0.5, .tolerance = tolerance});
+  };
+  const auto mean = [](const Solved& s) {
+    return s.mean([&](std::size_t e) { return s.total(e); }, [](std::size_t) { return true; }).value;
+  };
+  const Solved converged = solved(1e-3);
+  for (const double tolerance : {0.98, 0.9, 0.7, 0.5}) {
+    SCOPED_TRACE(tolerance);
+    const Solved few = solved(tolerance);
+    EXPECT_GT(few.result.residual, 0.9 * tolerance);
+    // All shots went from the floor, the brightest: its sides have the ambient light and no other.
+    double ambient = 1e300;
+    for (std::size_t e = 0; e < few.count(); ++e)
+      if (few.total(e) > 0.0) ambient = std::min(ambient, few.indirect(e));
+    const double with = std::abs(mean(few) - mean(converged));
+    const double without = std::abs(mean(few) - ambient - mean(converged));
+    EXPECT_LT(with, 0.2 * without);
+    EXPECT_GT(without, 0.1 * mean(converged));
+  }
+}
+
+// A black floor has no elements: what it takes is absorbed all the same, and nothing escapes from a
+// closed room.
+TEST(Solvers, BlackSurfacesAbsorb) {
+  for (const Solver solver : {Solver::Rows, Solver::Matrix, Solver::Shooting}) {
+    SCOPED_TRACE(static_cast<int>(solver));
+    SceneMaker maker;
+    const auto white = maker.material(test::diffuse(0.7));
+    const auto black = maker.material(test::diffuse(0.0));
+    maker.room({0, 0, 0}, {3, 3, 2}, {white, white, white, white, black, white});
+    const auto lamp = maker.material(test::emitter(10.0, 0.0));
+    maker.quad(lamp, {1, 1, 1.9f}, {1, 2, 1.9f}, {2, 2, 1.9f}, {2, 1, 1.9f});
+    const Solved s(maker.take(), {.solver = solver, .element_size = 0.5, .direct_samples = 256});
+    const FluxBalance& f = s.result.flux;
+    EXPECT_NEAR(f.escaped, 0.0, 1e-12 * f.emitted);
+    EXPECT_NEAR(f.absorbed, f.emitted, solver == Solver::Rows ? 0.01 * f.emitted : 1e-4 * f.emitted);
+  }
+}
+
 // A lit plate in the open: everything that is not absorbed escapes.
 TEST(Rows, OpenSceneBalances) {
   SceneMaker maker;
@@ -122,8 +189,33 @@ TEST(Rows, ReciprocityOfDirectLight) {
   EXPECT_LT(to_floor.error, 0.01 * to_floor.value);
 }
 
-// A slab that stands in the floor: points of the floor inside it are dropped, so an element that
-// it half covers has the mean of its free part.
+// A furnace is smooth: all that elements are divided for in this one is noise. Those whose samples
+// are off are divided first, so the samples of the others are off to the other side: a mean of them
+// was 2 % high.
+TEST(Rows, DividedElementsHaveUnbiasedSamples) {
+  double sum = 0.0;
+  double variance = 0.0;
+  constexpr int kSeeds = 8;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    SceneMaker maker;
+    const auto m = maker.material(test::emitter(1.0, 0.5));
+    maker.room({0, 0, 0}, {2, 2, 2}, {m, m, m, m, m, m});
+    const Solved s(maker.take(), {.max_elements = 8000,
+                                  .row_rays = 16,
+                                  .gather_rays = 16,
+                                  .direct_samples = 16,
+                                  .seed = static_cast<std::uint64_t>(seed)});
+    const auto mean = s.mean([&](std::size_t e) { return s.direct(e); },
+                             [](std::size_t) { return true; });
+    sum += mean.value / kSeeds;
+    variance += mean.error * mean.error / (kSeeds * kSeeds);
+  }
+  EXPECT_NEAR(sum, kPi, 4 * std::sqrt(variance));
+  EXPECT_LT(std::sqrt(variance), 0.004 * kPi);
+}
+
+// A slab that stands in the floor: what it covers is no part of the element around it, which has
+// the mean of its free part.
 TEST(Rows, BuriedPointsDoNotDarkenTheirElement) {
   SceneMaker maker;
   const auto m = maker.material(test::diffuse(1e-6));  // 0 has no elements
@@ -160,14 +252,13 @@ TEST(Rows, BuriedPointsDoNotDarkenTheirElement) {
       sum += 10.0 * 3 / std::pow(x * x + y * y + 9, 1.5);
       ++points;
     }
-  int found = 0;
-  for (std::size_t e = 0; e < s.count(); ++e) {
-    if (s.object(e) != 0 || (s.centre(e) - Vec3f(1, 1, 0)).norm() > 0.01f) continue;
-    // Every one of 1024 points says whether it is buried; the shadow takes 0.1 %.
-    EXPECT_NEAR(s.direct(e), sum / points, 0.005 * sum / points);
-    ++found;
-  }
-  EXPECT_EQ(found, 1);
+  const Vec3f free(1.6f, 1.4f, 0.0f);  // in the first triangle
+  const auto e = s.result.field.element_at(s.scene, scene::ObjectId(0U), 0, free);
+  ASSERT_NE(e, scene::SurfaceField::kNone);
+  EXPECT_NEAR(s.area(e), 3.0, 1e-5);  // the footprint is cut out
+  // The shadow of the slab's edge takes 0.1 %.
+  EXPECT_NEAR(s.direct(e), sum / points, 4 * s.error(e) + 1e-3 * sum / points);
+  EXPECT_LT(s.error(e), 0.01 * s.direct(e));
 }
 
 }  // namespace

@@ -25,6 +25,14 @@ struct ElementPiece {
   std::uint32_t triangle = 0;
   float area = 0.0f;               ///< [m^2]
   std::span<const Vec3f> corners;  ///< 3 or more, in the triangle's plane, its winding
+  static constexpr std::uint32_t kWhole = 0xffffffffU;
+  std::uint32_t part = kWhole;     ///< of ElementPieces::parts(), if the triangle is divided
+};
+
+/// Part of a triangle on one side of the walls that stand on it.
+struct TrianglePart {
+  std::uint32_t triangle;
+  std::array<Vec3f, 3> corners;
 };
 
 /// Pieces in 16 bytes each and 12 per corner.
@@ -35,13 +43,24 @@ class ElementPieces {
     const Record& r = records_[p];
     const std::size_t end =
         p + 1 < records_.size() ? records_[p + 1].first_corner : corners_.size();
-    return {r.object, r.triangle, r.area,
-            std::span(corners_).subspan(r.first_corner, end - r.first_corner)};
+    const bool whole = (r.source & kPart) == 0;
+    const std::uint32_t part = r.source & ~kPart;
+    return {r.object, whole ? r.source : parts_[part].triangle, r.area,
+            std::span(corners_).subspan(r.first_corner, end - r.first_corner),
+            whole ? ElementPiece::kWhole : part};
   }
   void push_back(const ElementPiece& piece) {
-    records_.push_back(
-        {piece.object, piece.triangle, piece.area, static_cast<std::uint32_t>(corners_.size())});
+    const bool whole = piece.part == ElementPiece::kWhole;
+    records_.push_back({piece.object, whole ? piece.triangle : kPart | piece.part, piece.area,
+                        static_cast<std::uint32_t>(corners_.size())});
     corners_.insert(corners_.end(), piece.corners.begin(), piece.corners.end());
+  }
+  [[nodiscard]] const std::vector<TrianglePart>& parts() const { return parts_; }
+  void add_part(const TrianglePart& part) { parts_.push_back(part); }
+  void set_parts(std::vector<TrianglePart> parts) { parts_ = std::move(parts); }
+  [[nodiscard]] std::size_t bytes() const {
+    return records_.capacity() * sizeof(Record) + corners_.capacity() * sizeof(Vec3f) +
+           parts_.capacity() * sizeof(TrianglePart);
   }
   void shrink_to_fit() {
     records_.shrink_to_fit();
@@ -51,12 +70,14 @@ class ElementPieces {
  private:
   struct Record {
     scene::ObjectId object;
-    std::uint32_t triangle;
+    std::uint32_t source;  ///< triangle, or kPart | part
     float area;
     std::uint32_t first_corner;
   };
+  static constexpr std::uint32_t kPart = 0x80000000U;
   std::vector<Record> records_;
   std::vector<Vec3f> corners_;
+  std::vector<TrianglePart> parts_;
 };
 
 /// The elements of a scene: the look-up structure (a SurfaceField without values) and the pieces

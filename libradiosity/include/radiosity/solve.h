@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -7,8 +8,11 @@
 
 #include "material/spectral_basis.h"
 #include "radiosity/elements.h"
+#include "radiosity/memory_use.h"
+#include "scene/camera.h"
 #include "scene/control.h"
 #include "scene/counters.h"
+#include "scene/light_groups.h"
 #include "scene/ray_query.h"
 #include "scene/surface_field.h"
 
@@ -18,6 +22,20 @@ enum class Solver {
   Rows,      ///< sparse hemisphere rows, solved at memory speed, then streamed gathering
   Shooting,  ///< classic progressive refinement (Cohen et al. 1988), point-to-polygon factors
   Matrix     ///< dense rows with many rays, solved directly (Eigen); reference for small scenes
+};
+
+/// What a solve hands over so that a later one can go on.
+enum class Keep {
+  Nothing,
+  Samples,  ///< sums of samples; rows are traced again
+  Rows      ///< and the rows, about 16 bytes per ray
+};
+
+/// A picture that will be made of a solution.
+struct View {
+  scene::Camera camera;
+  double aspect = 4.0 / 3.0;                      ///< width / height of the whole picture
+  std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1: the part that is wanted
 };
 
 struct SolveOptions {
@@ -38,7 +56,16 @@ struct SolveOptions {
   int max_iterations = 200;
   double tolerance = 1e-4;  ///< of the iteration, relative to the largest radiosity
   double time_limit = 0.0;  ///< [s]; 0: none
+  /// [bytes] that the scene, its BVH and the solve may hold together, see MemoryUse; 0: none. Fewer
+  /// elements, then shorter rows and fewer photons, keep below it.
+  std::uint64_t memory_limit = 0;
   std::uint64_t seed = 1;
+  Keep keep = Keep::Nothing;  ///< solver Rows only
+  /// If nothing but pictures of these views will use the solution: surfaces that none of them sees,
+  /// nor light straight from, get fewer samples, and errors are weighted by what they matter. Solver
+  /// Rows with keep Nothing only. Empty: every surface matters.
+  std::vector<View> views = {};
+  scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
   bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
   int probes = 0;  ///< points of the Certificate; 0: none is made
 };
@@ -78,24 +105,57 @@ struct Certificate {
 struct SolveResult {
   Elements elements;  ///< geometry of the elements (layout without values)
   scene::SurfaceField field;
-  scene::Counters counters;
+  std::vector<scene::GroupField> groups;  ///< whose sum the field is; empty with one group
+  /// To go on from with the field's elements; empty if not asked for, or stopped before there was
+  /// anything. For this version of the library.
+  std::vector<char> state;
+  scene::Counters counters;  ///< of this solve alone
   FluxBalance flux;
   double residual = 0.0;  ///< last change of radiosity, relative to its maximum
   int iterations = 0;
   double error_estimate = 0.0;  ///< RMS of the relative standard error of irradiance over the area
   double mesh_error = 0.0;      ///< RMS of what interpolation of direct light misses, estimated
   Certificate certificate;      ///< if SolveOptions::probes asked for one
+  MemoryUse memory;
+  /// What SolveOptions::memory_limit made smaller, one line each: "1000 elements instead of 60000".
+  std::vector<std::string> given_up;
   bool complete = true;    ///< false: stopped by time or request; the field is usable all the same
-  /// "tolerance", or if an error was asked for "error" (reached) or "rounds" (not); "iterations",
-  /// "time limit", "memory limit", "interrupt"
+  /// "interrupt", "time limit"; "memory limit": the solve went to its end, but `given_up` says with
+  /// what less; "iterations"; if an error was asked for "error" (reached) or "rounds" (not), else
+  /// "tolerance"
   std::string stopped_by;
 };
 
+/// Where another solve left off.
+struct Previous {
+  const scene::SurfaceField& field;  ///< its elements
+  const std::vector<char>& state;
+};
+
 /// Solves diffuse inter-reflection, also through panes, mirrors, solids and rough lobes.
-/// \throws Error  if a closed enclosure reflects everything (no finite solution).
+/// \throws Error  if a closed enclosure reflects everything (no finite solution), or a solver that
+/// knows no light groups finds several.
+/// \throws std::invalid_argument  if views are given for a solution that is kept or another solver.
+/// \throws RuntimeFailure  if the memory limit does not even hold the scene.
 [[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
                                 const SolveOptions& options = {},
                                 const scene::Control& control = {});
+
+/// The same, going on from an earlier solve.
+///
+/// Of the same scene: an interrupted solve goes on where it was, and ends with the bits of one that
+/// was not interrupted (the chunk of samples, or the photons, that it was drawing are drawn again). A
+/// finished one takes the samples that a smaller SolveOptions::error needs.
+///
+/// Of a scene where only diffuse reflectances differ (scene::hash_scene_but_reflectance): elements,
+/// direct light, caustics and, if they were kept, rows stay. Rows are traced again if that concerns
+/// patches that were shot (their light is in the rows).
+///
+/// \throws Error  if the state is damaged or of another scene, another basis or other options than
+/// error, time_limit, tolerance, max_iterations and keep.
+[[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
+                                const SolveOptions& options, const scene::Control& control,
+                                const Previous& previous);
 
 /// Measures a field that solve() returned, or what was made of it since.
 /// \param solved  elements and field. Its errors are the target if the options ask for none.

@@ -269,6 +269,7 @@ void Builder::add_object(const std::string& name, MeshId mesh, MaterialId materi
                          const Job* shared, const Model::Node& node) {
   Object object;
   object.name = name;
+  object.light_group = node.light_group;
   object.mesh = mesh;
   object.material = material;
   if (shared != nullptr) {

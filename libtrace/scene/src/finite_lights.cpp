@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "directions.h"
+#include "scene/light_groups.h"
 #include "scene/spherical_triangle.h"
 
 namespace atrium::scene {
@@ -44,6 +45,16 @@ float shape_solid_angle(const Light& light) {
   if (const auto* profile = std::get_if<ProfileLight>(&light.kind))
     return static_cast<float>(profile->profile.flux());
   return 4.0f * kPi;
+}
+
+// Is p in the triangle's plane as far as rounding can tell? Nothing of it is seen from there, and
+// its solid angle would be noise between 0 and 2 pi. Bound as for SurfacePoint::error.
+bool in_plane(const std::array<Vec3f, 3>& c, const Vec3f& p) {
+  const Vec3d a = c[0].cast<double>();
+  const Vec3d n = (c[1].cast<double>() - a).cross(c[2].cast<double>() - a);
+  const Vec3f size = c[0].cwiseAbs().cwiseMax(c[1].cwiseAbs()).cwiseMax(c[2].cwiseAbs());
+  return !(std::abs((p.cast<double>() - a).dot(n)) >
+           28.0 * 0x1p-24 * n.cwiseAbs().dot(size.cast<double>()));
 }
 
 }  // namespace
@@ -198,6 +209,7 @@ template <int N>
 auto FiniteLights<N>::place_on(const EmissiveTriangle& t, const Vec3f& p, const Vec2f& u) const
     -> std::optional<Place> {
   const std::array<Vec3f, 3> c = scene_->corners(t.object, t.triangle);
+  if (in_plane(c, p)) return std::nullopt;
   const SphericalTriangle seen(c, p);
   Vec2f bary = uniform_triangle(u);
   if (seen.usable()) {
@@ -231,10 +243,11 @@ std::optional<LightSample<N>> FiniteLights<N>::positional(std::size_t i, const V
   LightSample<N> s;
   s.distance = std::sqrt(distance2);
   s.wi = d / s.distance;
+  s.end = light.position;
   s.radiance = intensity_towards(light, -s.wi) / distance2;
   s.pdf = 1.0f;
   s.dirac = true;
-  s.light = light.index;
+  s.light = s.source = light.index;
   return s;
 }
 
@@ -255,9 +268,14 @@ std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3
   if (!place) return std::nullopt;
   s.wi = place->wi;
   s.distance = place->distance;
+  // The direction's rounding moves the ray's end by its share of the distance.
+  SurfacePoint seen = place->point;
+  seen.error += 0x1p-20f * place->distance;
+  s.end = offset_origin(seen, -place->wi);
   s.radiance = radiance_at(place->point);
   s.pdf *= place->pdf;
   s.light = static_cast<std::uint32_t>(scene_->lights.size()) + index;
+  s.source = light_source(*scene_, triangles_[index].object);
   return s;
 }
 
@@ -302,6 +320,7 @@ EmissionSample<N> FiniteLights<N>::emission_of(const Positional& light, const Ve
   s.origin = light.position;
   s.direction = light.to_local.transpose() * Vec3f(local.x(), local.y(), -local.z());
   s.weight = intensity_towards(light, s.direction) * (2.0f * kPi * (1.0f - cos_max));
+  s.source = light.index;
   return s;
 }
 
@@ -320,6 +339,7 @@ EmissionSample<N> FiniteLights<N>::emission_of(const EmissiveTriangle& t, const 
   s.direction = Frame(Vec3f(side * q.ng)).to_world(sample_cosine_hemisphere(u));
   s.origin = offset_origin(q, s.direction);
   s.weight = radiance_at(q) * (kPi * t.area * (two_sided(t) ? 2.0f : 1.0f));
+  s.source = light_source(*scene_, t.object);
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "finite_lights.h"
+#include "scene/light_groups.h"
 #include "sky_light.h"
 
 namespace atrium::scene {
@@ -23,12 +24,14 @@ struct LightSampler<N>::Impl {
   Sky sky;
   Vec3f center = Vec3f::Zero();
   float radius = 1.0f;
+  std::uint32_t environment_number = 0;
   std::size_t finite_count = 0;
   std::vector<Spectrum<N>> flux_of;  // finite lights, suns without a size, discs, environment
   std::vector<double> flux_cdf;
 
   Impl(const Scene& s, const material::SpectralBasis& b, std::vector<Portal> portals)
       : finite(s, b), sky(s, b, std::move(portals)) {
+    environment_number = environment_source(s);
     center = (0.5 * (s.bounds.min() + s.bounds.max())).template cast<float>();
     radius = std::max(1e-6f, static_cast<float>(0.5 * s.bounds.diagonal().norm()));
     flux_of = finite.fluxes();
@@ -67,6 +70,7 @@ struct LightSampler<N>::Impl {
     s.radiance = sun.irradiance;
     s.pdf = 1.0f;
     s.dirac = true;
+    s.source = sun.light;
     return s;
   }
   /// Environment and discs, without other lights.
@@ -80,13 +84,14 @@ struct LightSampler<N>::Impl {
     s.wi = *wi;
     s.pdf = sky.pdf(shares, p, normal, s.wi);
     s.radiance = sky.radiance(s.wi);
+    s.source = environment_number;
     if (!(s.pdf > 0.0f)) return std::nullopt;
     return s;
   }
 
   /// Flux that arrives from far away through a disc that faces it and covers the scene.
   EmissionSample<N> arriving(const Vec3f& towards, const Spectrum<N>& irradiance,
-                             const Vec2f& u) const {
+                             std::uint32_t source, const Vec2f& u) const {
     const float r = radius * std::sqrt(u.x());
     const float phi = 2.0f * kPi * u.y();
     EmissionSample<N> s;
@@ -94,21 +99,24 @@ struct LightSampler<N>::Impl {
         center + Frame(towards).to_world({r * std::cos(phi), r * std::sin(phi), 1.01f * radius});
     s.direction = -towards;
     s.weight = irradiance * (kPi * radius * radius);
+    s.source = source;
     return s;
   }
   /// \param i  counts suns without a size, discs, then the environment.
   EmissionSample<N> sky_emission(std::size_t i, const Vec2f& u_position,
                                  const Vec2f& u_direction) const {
     if (i < sky.points().size())
-      return arriving(sky.points()[i].direction, sky.points()[i].irradiance, u_position);
+      return arriving(sky.points()[i].direction, sky.points()[i].irradiance,
+                      sky.points()[i].light, u_position);
     i -= sky.points().size();
     if (i < sky.discs().size())
       return arriving(Sky::disc_direction(sky.discs()[i], u_direction), sky.discs()[i].irradiance,
-                      u_position);
+                      sky.discs()[i].light, u_position);
     const Vec3f no_normal = Vec3f::Zero();
     const EnvironmentLight<N>& e = sky.environment();
     const Vec3f towards = e.sample(no_normal, u_direction);
-    return arriving(towards, e.radiance(towards) / e.pdf(no_normal, towards), u_position);
+    return arriving(towards, e.radiance(towards) / e.pdf(no_normal, towards), environment_number,
+                    u_position);
   }
 };
 
@@ -203,6 +211,16 @@ Spectrum<N> LightSampler<N>::emitted(const SurfacePoint& point, const Vec3f& wo)
 template <int N>
 Spectrum<N> LightSampler<N>::environment(const Vec3f& direction) const {
   return impl_->sky.radiance(direction);
+}
+
+template <int N>
+void LightSampler<N>::sky_parts(
+    const LightSample<N>& sample,
+    const std::function<void(std::uint32_t, const Spectrum<N>&)>& part) const {
+  const typename Impl::Sky& sky = impl_->sky;
+  part(impl_->environment_number, sky.environment().radiance(sample.wi));
+  for (const auto& disc : sky.discs())
+    if (Impl::Sky::covers(disc, sample.wi)) part(disc.light, Impl::Sky::radiance(disc));
 }
 
 template <int N>

@@ -37,7 +37,28 @@ void add(Hash64& h, const material::TextureSlot& slot) {
   h.value(slot.channel);
 }
 
-void add(Hash64& h, const material::Material& m) {
+/// Does body_reflectance say how much light is reflected diffusely, and nothing else?
+bool only_reflects(const material::Material& m) {
+  const material::MaterialTraits t = material::traits(m);
+  return m.medium == material::Material::Medium::Opaque && !t.coupled && !t.diffuse_transmission &&
+         !t.rough;
+}
+
+bool is_black(const material::SpectralValue& value) {
+  return std::visit(
+      [](const auto& v) {
+        using T = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<T, double>)
+          return !(v > 0.0);
+        else if constexpr (std::is_same_v<T, Rgb>)
+          return !(std::max({v[0], v[1], v[2]}) > 0);
+        else
+          return std::none_of(v.value.begin(), v.value.end(), [](double x) { return x > 0.0; });
+      },
+      value);
+}
+
+void add(Hash64& h, const material::Material& m, bool reflectance) {
   h.value(m.medium);
   h.value(m.combination);
   h.value(m.sigma.has_value());
@@ -48,7 +69,10 @@ void add(Hash64& h, const material::Material& m) {
   }
   for (const auto* v : {&m.n, &m.kappa, &m.transmission_tint, &m.extinction, &m.emission})
     add(h, *v);
-  add(h, m.body_reflectance);
+  if (reflectance || !only_reflects(m))
+    add(h, m.body_reflectance);
+  else
+    h.value(m.body_reflectance ? 1 + is_black(*m.body_reflectance) : 0);
   add(h, m.body_transmittance);
   for (const auto* slot : {&m.roughness_texture, &m.body_texture, &m.reflectance_texture,
                            &m.emission_texture, &m.normal_texture, &m.alpha_texture}) {
@@ -125,9 +149,7 @@ void add(Hash64& h, const Mesh& mesh) {
   h.array(mesh.triangles);
 }
 
-}  // namespace
-
-std::uint64_t hash_scene(const Scene& scene) {
+std::uint64_t hash(const Scene& scene, bool reflectance) {
   Hash64 h;
   for (const Mesh& mesh : scene.meshes) add(h, mesh);
   for (const Object& o : scene.objects) {
@@ -137,7 +159,7 @@ std::uint64_t hash_scene(const Scene& scene) {
     h.value(o.instanced);
     add_vector(h, o.to_scene.matrix());
   }
-  for (const material::Material& m : scene.materials) add(h, m);
+  for (const material::Material& m : scene.materials) add(h, m, reflectance);
   for (const material::Texture& t : scene.textures) add(h, t);
   for (const Light& light : scene.lights) {
     h.word(light.kind.index());
@@ -154,5 +176,10 @@ std::uint64_t hash_scene(const Scene& scene) {
   h.value(scene.unit);
   return h.result();
 }
+
+}  // namespace
+
+std::uint64_t hash_scene(const Scene& scene) { return hash(scene, true); }
+std::uint64_t hash_scene_but_reflectance(const Scene& scene) { return hash(scene, false); }
 
 }  // namespace atrium::scene

@@ -177,11 +177,19 @@ Spectrum<N> Shading<N>::through_medium(const Ray& ray, float distance) const {
 template <int N>
 Spectrum<N> Shading<N>::visibility(const SurfacePoint& from, const LightSample<N>& light,
                                    Counters& counters, Counter kind) const {
-  // Ends just before the light, which is a surface too; relative, as the rounding of t is.
-  constexpr float kBeforeTheLight = 1.0f - 1e-4f;
-  return transmittance(
-      {offset_origin(from, light.wi), light.wi, 0.0f, light.distance * kBeforeTheLight}, counters,
-      kind);
+  return visibility(offset_origin(from, light.wi), light, counters, kind);
+}
+
+template <int N>
+Spectrum<N> Shading<N>::visibility(const Vec3f& origin, const LightSample<N>& light,
+                                   Counters& counters, Counter kind) const {
+  if (!std::isfinite(light.distance)) return transmittance({origin, light.wi}, counters, kind);
+  // Both ends are off their surfaces by the error of their positions, so neither is in the way, at
+  // whatever angle: in the gap between a ceiling and a lamp that touches it as in the open.
+  const Vec3f d = light.end - origin;
+  const float length = d.norm();
+  if (!(d.dot(light.wi) > 0.0f)) return Spectrum<N>::one();  // closer than that: nothing between
+  return transmittance({origin, d / length, 0.0f, length}, counters, kind);
 }
 
 template class Shading<1>;

@@ -19,10 +19,6 @@ float stretched(float u, float low, float size) {
 }
 
 // A disc of chord c: sin^2(r / 2) = c^2 / 4, so its solid angle is pi c^2.
-template <class Sun>
-bool covers(const Sun& sun, const Vec3f& w) {
-  return (w - sun.direction).squaredNorm() <= sun.chord2;
-}
 float sin2_radius(float chord2) { return chord2 * (1.0f - 0.25f * chord2); }
 
 }  // namespace
@@ -31,12 +27,13 @@ template <int N>
 SkyLight<N>::SkyLight(const Scene& scene, const material::SpectralBasis& basis,
                       std::vector<Portal> portals)
     : environment_(scene, basis), portals_(std::move(portals)) {
-  for (const Light& light : scene.lights) {
+  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
     const auto* d = std::get_if<DirectionalLight>(&light.kind);
     if (d == nullptr) continue;
     const float chord = 2.0f * std::sin(0.5f * d->angular_radius);
     const Sun sun{light.to_scene.linear().col(2).normalized().cast<float>(),
-                  basis.template resolve<N>(d->irradiance), chord * chord};
+                  basis.template resolve<N>(d->irradiance), chord * chord, i};
     if (sun.irradiance.max() > 0.0f) (sun.chord2 > 0.0f ? discs_ : points_).push_back(sun);
   }
 }
@@ -61,10 +58,20 @@ auto SkyLight<N>::shares(const Vec3f& p, const Vec3f& normal) const -> Shares {
 }
 
 template <int N>
+bool SkyLight<N>::covers(const Sun& disc, const Vec3f& w) {
+  return (w - disc.direction).squaredNorm() <= disc.chord2;
+}
+
+template <int N>
+Spectrum<N> SkyLight<N>::radiance(const Sun& disc) {
+  return disc.irradiance / (kPi * sin2_radius(disc.chord2));
+}
+
+template <int N>
 Spectrum<N> SkyLight<N>::radiance(const Vec3f& w) const {
   Spectrum<N> r = environment_.radiance(w);
   for (const Sun& d : discs_)
-    if (covers(d, w)) r += d.irradiance / (kPi * sin2_radius(d.chord2));
+    if (covers(d, w)) r += radiance(d);
   return r;
 }
 

@@ -17,8 +17,9 @@ class SkyLight {
   struct Sun {
     Vec3f direction;  ///< towards it
     Spectrum<N> irradiance;
-    float
-        chord2;  ///< (2 sin(radius / 2))^2: a cosine would lose the sun's size to rounding; 0: none
+    /// (2 sin(radius / 2))^2: a cosine would lose the sun's size to rounding; 0: none
+    float chord2;
+    std::uint32_t light;  ///< into Scene::lights
   };
 
   /// What a point may choose from, and how much of each: weights that add up to no fixed number.
@@ -37,6 +38,8 @@ class SkyLight {
   [[nodiscard]] const EnvironmentLight<N>& environment() const { return environment_; }
   [[nodiscard]] bool empty() const { return !environment_.present() && discs_.empty(); }
 
+  [[nodiscard]] static bool covers(const Sun& disc, const Vec3f& w);
+  [[nodiscard]] static Spectrum<N> radiance(const Sun& disc);
   /// Uniform over a disc.
   [[nodiscard]] static Vec3f disc_direction(const Sun& disc, const Vec2f& u);
   /// Radiance of environment and discs.

@@ -1,12 +1,12 @@
 #include "scene/solution_io.h"
 
-#include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
-#include <type_traits>
 
 #include "hash64.h"
 #include "material/error.h"
+#include "scene/archive.h"
 #include "scene/output_file.h"
 
 namespace atrium::scene {
@@ -14,73 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "solution files are little endian");
-
 constexpr char kMagic[8] = {'A', 'T', 'R', 'I', 'U', 'M', 'S', 'F'};
-constexpr std::uint32_t kVersion = 2;
-
-/// Appends values; vectors with their length.
-class Writer {
- public:
-  template <class T>
-  void operator()(const T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    raw(&v, sizeof v);
-  }
-  template <class T>
-  void operator()(const std::vector<T>& v) {
-    static_assert(std::is_arithmetic_v<T>);
-    (*this)(static_cast<std::uint64_t>(v.size()));
-    raw(v.data(), v.size() * sizeof(T));
-  }
-  void operator()(const std::string& s) {
-    (*this)(static_cast<std::uint64_t>(s.size()));
-    raw(s.data(), s.size());
-  }
-  void raw(const void* data, std::size_t size) {
-    const char* p = static_cast<const char*>(data);
-    bytes.insert(bytes.end(), p, p + size);
-  }
-  std::vector<char> bytes;
-};
-
-/// Takes values off; nothing is allocated that the file does not contain.
-class Reader {
- public:
-  Reader(const char* begin, const char* end, std::string name)
-      : at_(begin), end_(end), name_(std::move(name)) {}
-  template <class T>
-  void operator()(T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    raw(&v, sizeof v);
-  }
-  template <class T>
-  void operator()(std::vector<T>& v) {
-    v.resize(count(sizeof(T)));
-    raw(v.data(), v.size() * sizeof(T));
-  }
-  void operator()(std::string& s) {
-    s.resize(count(1));
-    raw(s.data(), s.size());
-  }
-  [[nodiscard]] std::size_t count(std::size_t item_size) {
-    std::uint64_t n = 0;
-    (*this)(n);
-    if (n > static_cast<std::uint64_t>(end_ - at_) / item_size) damaged();
-    return static_cast<std::size_t>(n);
-  }
-  [[noreturn]] void damaged() const { throw Error(name_ + ": is damaged"); }
-
- private:
-  void raw(void* data, std::size_t size) {
-    if (size > static_cast<std::size_t>(end_ - at_)) damaged();
-    if (size != 0) std::memcpy(data, at_, size);
-    at_ += size;
-  }
-  const char* at_;
-  const char* end_;
-  std::string name_;
-};
+constexpr std::uint32_t kVersion = 4;
 
 template <class Archive, class Facet>
 void facet(Archive& a, Facet& f) {
@@ -92,42 +27,76 @@ void facet(Archive& a, Facet& f) {
   a(f.first_cell);
   a(f.clump);
 }
-void facets(Writer& a, const std::vector<SurfaceField::Facet>& v) {
+void facets(ArchiveWriter& a, const std::vector<SurfaceField::Facet>& v) {
   a(static_cast<std::uint64_t>(v.size()));
   for (const SurfaceField::Facet& f : v) facet(a, f);
 }
-void facets(Reader& a, std::vector<SurfaceField::Facet>& v) {
+void facets(ArchiveReader& a, std::vector<SurfaceField::Facet>& v) {
   v.resize(a.count(12 * sizeof(float) + 1));
   for (SurfaceField::Facet& f : v) facet(a, f);
+}
+
+template <class Archive, class Cut>
+void cut(Archive& a, Cut& c) {
+  for (int i = 0; i < 3; ++i) a(c.point[i]);
+  for (int i = 0; i < 3; ++i) a(c.normal[i]);
+  for (auto& child : c.child) a(child);
+}
+void cuts(ArchiveWriter& a, const std::vector<SurfaceField::Cut>& v) {
+  a(static_cast<std::uint64_t>(v.size()));
+  for (const SurfaceField::Cut& c : v) cut(a, c);
+}
+void cuts(ArchiveReader& a, std::vector<SurfaceField::Cut>& v) {
+  v.resize(a.count(8 * sizeof(float)));
+  for (SurfaceField::Cut& c : v) cut(a, c);
+}
+
+template <class Archive, class Quantities>
+void quantities(Archive& a, Quantities& q) {
+  a(q.direct);
+  a(q.caustic);
+  a(q.indirect);
+}
+
+template <class Archive, class Group>
+void group(Archive& a, Group& g) {
+  auto& [name, factor, irradiance, body_irradiance, light_error, indirect_error] = g;
+  a(name);
+  a(factor);
+  quantities(a, irradiance);
+  quantities(a, body_irradiance);
+  a(light_error);
+  a(indirect_error);
+}
+void groups(ArchiveWriter& a, const std::vector<GroupField>& v) {
+  a(static_cast<std::uint64_t>(v.size()));
+  for (const GroupField& g : v) group(a, g);
+}
+void groups(ArchiveReader& a, std::vector<GroupField>& v) {
+  v.resize(a.count(10 * sizeof(std::uint64_t)));
+  for (GroupField& g : v) group(a, g);
 }
 
 /// One list of members for both directions. The binding stops compiling when a member is added.
 template <class Archive, class Field>
 void field(Archive& a, Field& f) {
-  auto& [lanes, list, nodes, triangle_facet, element_facet, element_level, element_x, element_y,
-         element_area, irradiance, body_irradiance, standard_error, valid, unit] = f;
+  auto& [lanes, list, nodes, triangle_facet, cut_list, element_facet, element_level, element_x,
+         element_y, element_area, irradiance, body_irradiance, standard_error, valid, unit] = f;
   a(lanes);
   facets(a, list);
   a(nodes);
   a(triangle_facet);
+  cuts(a, cut_list);
   a(element_facet);
   a(element_level);
   a(element_x);
   a(element_y);
   a(element_area);
-  for (auto* q : {&irradiance, &body_irradiance}) {
-    a(q->direct);
-    a(q->caustic);
-    a(q->indirect);
-  }
+  quantities(a, irradiance);
+  quantities(a, body_irradiance);
   a(standard_error);
   a(valid);
   a(unit);
-}
-
-bool all_below(const std::vector<std::uint32_t>& v, std::size_t limit) {
-  return std::all_of(v.begin(), v.end(),
-                     [&](std::uint32_t i) { return i < limit || i == SurfaceField::kNone; });
 }
 
 /// The grids lie in the array, and behind them every block of children has one parent, in front of
@@ -176,6 +145,23 @@ bool elements_consistent(const SurfaceField& f) {
   return true;
 }
 
+/// Triangles lead to facets, cuts to facets or to cuts behind themselves: every walk ends.
+bool cuts_consistent(const SurfaceField& f) {
+  const auto leads_on = [&](std::uint32_t i, std::size_t from) {
+    if (SurfaceField::is_cut(i)) {
+      const std::uint32_t cut = i & ~SurfaceField::kCut;
+      return cut >= from && cut < f.cuts.size();
+    }
+    return i == SurfaceField::kNone || i < f.facets.size();
+  };
+  for (const std::uint32_t i : f.triangle_facet)
+    if (!leads_on(i, 0)) return false;
+  for (std::size_t k = 0; k < f.cuts.size(); ++k)
+    for (const std::uint32_t child : f.cuts[k].child)
+      if (!leads_on(child, k + 1)) return false;
+  return true;
+}
+
 /// Look-ups index without checks, so every index is checked here.
 bool consistent(const SurfaceField& f) {
   const std::size_t n = f.element_count();
@@ -183,13 +169,29 @@ bool consistent(const SurfaceField& f) {
     return v.empty() || v.size() == size;
   };
   bool ok = (f.lanes == 1 || f.lanes == 3 || f.lanes == 4 || f.lanes == 8) &&
-            all_below(f.triangle_facet, f.facets.size()) && nodes_consistent(f) &&
-            elements_consistent(f);
+            cuts_consistent(f) && nodes_consistent(f) && elements_consistent(f);
   const std::size_t values = n * 2 * static_cast<std::size_t>(std::max(f.lanes, 0));
   for (const SurfaceField::Quantities* q : {&f.irradiance, &f.body_irradiance}) {
     ok = ok && sized(q->direct, values) && sized(q->caustic, values) && sized(q->indirect, values);
   }
   return ok && sized(f.standard_error, n * 2) && (f.valid.empty() || f.valid.size() == n * 2);
+}
+
+/// Groups are of the field's elements, and all of them can be told apart.
+bool consistent(const std::vector<GroupField>& groups, const SurfaceField& f) {
+  const std::size_t sides = f.element_count() * 2;
+  const std::size_t values = sides * static_cast<std::size_t>(f.lanes);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (const SurfaceField::Quantities* q : {&groups[g].irradiance, &groups[g].body_irradiance})
+      for (const std::vector<float>* v : {&q->direct, &q->caustic, &q->indirect})
+        if (!v->empty() && v->size() != values) return false;
+    if (groups[g].light_error.size() != sides || groups[g].indirect_error.size() != sides ||
+        !(groups[g].factor >= 0.0 && std::isfinite(groups[g].factor)))
+      return false;
+    for (std::size_t other = 0; other < g; ++other)
+      if (groups[other].name == groups[g].name) return false;
+  }
+  return true;
 }
 
 std::uint64_t checksum(const char* data, std::size_t size) {
@@ -209,13 +211,15 @@ std::vector<char> read_all(const fs::path& file) {
 }  // namespace
 
 void write_solution(const Solution& solution, const fs::path& file) {
-  Writer w;
+  ArchiveWriter w;
   w.raw(kMagic, sizeof kMagic);
   w(kVersion);
   w(solution.scene_hash);
   w(solution.basis);
   w(solution.options);
   field(w, solution.field);
+  groups(w, solution.groups);
+  w(solution.state);
   const std::uint64_t sum = checksum(w.bytes.data(), w.bytes.size());
   w(sum);
 
@@ -247,13 +251,37 @@ Solution read_solution(const fs::path& file) {
   if (sum != checksum(bytes.data(), size)) throw Error(name + ": is truncated or damaged");
 
   Solution solution;
-  Reader r(bytes.data() + kHead, bytes.data() + size, name);
+  ArchiveReader r(bytes.data() + kHead, bytes.data() + size, name);
   r(solution.scene_hash);
   r(solution.basis);
   r(solution.options);
   field(r, solution.field);
-  if (!consistent(solution.field)) throw Error(name + ": is damaged");
+  groups(r, solution.groups);
+  r(solution.state);
+  if (!consistent(solution.field) || !consistent(solution.groups, solution.field))
+    throw Error(name + ": is damaged");
   return solution;
+}
+
+void dim(Solution& solution, const std::vector<std::pair<std::string, double>>& factors) {
+  for (const auto& [name, factor] : factors) {
+    std::string known;
+    GroupField* found = nullptr;
+    for (GroupField& g : solution.groups) {
+      known += (known.empty() ? "'" : ", '") + g.name + "'";
+      if (g.name == name) found = &g;
+    }
+    if (known.empty()) throw Error("the solution holds no light groups");
+    if (found == nullptr) throw Error("no light group '" + name + "'; there are " + known);
+    if (!(factor >= 0.0 && std::isfinite(factor)))
+      throw Error("light group '" + name + "': a factor must be a number of at least 0");
+    found->factor = factor;
+  }
+  if (solution.groups.empty()) return;
+  std::vector<double> all;
+  for (const GroupField& g : solution.groups) all.push_back(g.factor);
+  solution.field = reweight(solution.field, solution.groups, all);
+  solution.state = {};
 }
 
 void check_solution(const Solution& solution, const Scene& scene, const std::string& basis,
@@ -261,6 +289,11 @@ void check_solution(const Solution& solution, const Scene& scene, const std::str
   if (solution.scene_hash != hash_scene(scene) ||
       solution.field.triangle_facet.size() != scene.triangle_count()) {
     throw Error(file.string() + ": was solved for another scene (files or options that change it)");
+  }
+  for (const GroupField& g : solution.groups) {
+    if (g.factor != 1.0)
+      throw Error(file.string() + ": light group '" + g.name +
+                  "' is dimmed, the scene's lights are not");
   }
   if (solution.basis != basis) {
     throw Error(file.string() + ": was solved with " + solution.basis + ", this run uses " + basis);

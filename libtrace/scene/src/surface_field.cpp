@@ -14,15 +14,16 @@ struct GridPlace {
   float x = 0.0f, y = 0.0f;  // in cells of level 0
 };
 
-GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
-                std::uint32_t triangle, const Vec3f& position) {
-  const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
-  if (index >= field.triangle_facet.size()) return {};
-  const std::uint32_t f = field.triangle_facet[index];
-  if (f == kNone) return {};
-  const SurfaceField::Facet& facet = field.facets[f];
+GridPlace place(const SurfaceField::Facet& facet, const Vec3f& position) {
   const Vec3f d = position - facet.origin;
   return {&facet, d.dot(facet.axis_u), d.dot(facet.axis_v)};
+}
+
+GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
+                std::uint32_t triangle, const Vec3f& position) {
+  const std::uint32_t f = field.facet_at(scene, object, triangle, position);
+  if (f == kNone) return {};
+  return place(field.facets[f], position);
 }
 
 std::uint32_t cell_coordinate(float x, std::uint32_t n) {
@@ -225,10 +226,26 @@ class StencilMaker {
 
 }  // namespace
 
+std::uint32_t SurfaceField::facet_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
+                                     const Vec3f& position) const {
+  const std::uint64_t index = scene.objects[object.value].first_triangle + triangle;
+  if (index >= triangle_facet.size()) return kNone;
+  std::uint32_t at = triangle_facet[index];
+  while (is_cut(at)) {
+    const Cut& cut = cuts[at & ~kCut];
+    at = cut.child[(position - cut.point).dot(cut.normal) >= 0.0f ? 0 : 1];
+  }
+  return at;
+}
+
 std::uint32_t SurfaceField::element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                        const Vec3f& position) const {
   const GridPlace p = place(*this, scene, object, triangle, position);
   return p.facet != nullptr ? nearest_element(*this, p) : kNone;
+}
+
+std::uint32_t SurfaceField::element_of_facet(std::uint32_t facet, const Vec3f& position) const {
+  return nearest_element(*this, place(facets[facet], position));
 }
 
 float SurfaceField::element_size(std::uint32_t element) const {

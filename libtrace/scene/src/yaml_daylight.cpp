@@ -22,6 +22,7 @@ struct Sun {
   double irradiance = 0.0;  ///< on a plane that faces it, in the scene's unit
   material::SpectralValue color = 1.0;
   double angular_radius = kSunAngularRadius;
+  std::string light_group;
   std::optional<YamlView> view;  ///< of `sun`
 
   [[nodiscard]] double zenith() const { return std::acos(std::clamp(direction->y(), -1.0, 1.0)); }
@@ -62,7 +63,9 @@ Sun read_sun(const YamlScene& scene, const std::optional<YamlView>& view) {
   sun.view = view;
   if (!view) return sun;
   const YamlMap map = view->map(
-      "sun", {"azimuth", "elevation", "place", "time", "irradiance", "color", "angular_diameter"});
+      "sun", {"azimuth", "elevation", "place", "time", "irradiance", "color", "angular_diameter",
+              "light_group"});
+  sun.light_group = read_light_group(map);
   if (map.has("place") || map.has("time")) {
     if (map.has("azimuth") || map.has("elevation"))
       view->fail("give place and time, or azimuth and elevation, not both");
@@ -142,7 +145,8 @@ Sky read_weather(const YamlScene& scene, const YamlMap& map, Sun& sun) {
 
 Environment read_sky(const YamlScene& scene, const YamlView& view, Sun& sun) {
   const YamlMap map =
-      view.map("sky", {"cie", "perez", "epw", "time", "irradiance", "zenith", "ground", "color"});
+      view.map("sky", {"cie", "perez", "epw", "time", "irradiance", "zenith", "ground", "color",
+                       "light_group"});
   const std::string kind = map.one_of({"cie", "perez", "epw"});
   for (const char* key : {"irradiance", "zenith"})
     if (kind != "cie" && map.has(key)) map.get(key).fail("this key belongs to a cie sky");
@@ -155,6 +159,7 @@ Environment read_sky(const YamlScene& scene, const YamlView& view, Sun& sun) {
   const Vec3d direction = sun.direction.value_or(Vec3d::UnitY());
   const double horizontal_sun = sun.direction ? sun.irradiance * std::max(0.0, direction.y()) : 0.0;
   Environment environment;
+  environment.light_group = read_light_group(map);
   environment.pattern = SkyDome(sky.pattern, direction, ground ? ground->number(0.0, 1.0) : 0.2,
                                 sky.irradiance > 0.0 ? horizontal_sun / sky.irradiance : 0.0);
   environment.radiance = scaled(
@@ -170,6 +175,7 @@ Light light_of(const Sun& sun, const Eigen::Affine3d& frame) {
   const Vec3d up = std::abs(towards.y()) < 0.999 ? Vec3d(Vec3d::UnitY()) : Vec3d(Vec3d::UnitZ());
   Light light;
   light.name = "sun";
+  light.light_group = sun.light_group;
   light.kind = std::move(directional);
   light.to_scene = look_at(Vec3d::Zero(), -towards, up);
   return light;

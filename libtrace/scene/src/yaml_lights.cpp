@@ -171,10 +171,11 @@ Placed read_light(YamlScene& scene, const YamlMap& map, const std::string& name)
 Placed read_lights(YamlScene& scene, const YamlView& list) {
   Placed all;
   for (const YamlView& item : list.items()) {
-    const YamlMap map = item.map(
-        "light", {"name", "point", "spot", "directional", "ies", "rectangle", "at", "repeat"});
+    const YamlMap map = item.map("light", {"name", "point", "spot", "directional", "ies",
+                                           "rectangle", "at", "repeat", "light_group"});
     const std::string name = map.has("name") ? map.get("name").text() : "light";
-    const Placed light = read_light(scene, map, name);
+    Placed light = read_light(scene, map, name);
+    put_in_group(light, map);
     for (const Eigen::Affine3d& place : read_places(map, Eigen::Affine3d::Identity())) {
       append(all, light, place, item);
     }
@@ -235,8 +236,10 @@ Image read_sky_image(const YamlView& view) {
 }
 
 Environment read_environment(YamlScene& scene, const YamlView& view) {
-  const YamlMap map = view.map("environment", {"radiance", "color", "image", "rotate"});
+  const YamlMap map = view.map("environment", {"radiance", "color", "image", "rotate",
+                                               "light_group"});
   Environment environment;
+  environment.light_group = read_light_group(map);
   environment.radiance = read_emitted(scene, map, "radiance");
   if (const auto image = map.find("image")) {
     environment.pattern = read_sky_image(*image);

@@ -183,7 +183,7 @@ Placed read_object(YamlScene& scene, const YamlView& view) {
   const YamlMap map =
       view.map("object", {"name", "box", "polygon", "mesh", "sphere", "cylinder", "cage", "file",
                           "use", "group", "light", "material", "materials", "translate", "rotate",
-                          "scale", "matrix", "at", "repeat"});
+                          "scale", "matrix", "at", "repeat", "light_group"});
   const std::string kind = map.one_of(
       {"box", "polygon", "mesh", "sphere", "cylinder", "cage", "file", "use", "group", "light"});
   const std::string name = map.has("name") ? map.get("name").text() : kind;
@@ -212,6 +212,7 @@ Placed read_object(YamlScene& scene, const YamlView& view) {
       for (Model::Node& node : content.nodes) node.material = id;
     }
   }
+  put_in_group(content, map);
   Placed placed;
   for (const Eigen::Affine3d& place : read_places(map, read_transform(map))) {
     append(placed, content, place, view);
@@ -268,6 +269,22 @@ void append(Placed& all, const Placed& part, const Eigen::Affine3d& place, const
     camera.to_scene = rigid(camera.to_scene);
     all.cameras.push_back(std::move(camera));
   }
+}
+
+void put_in_group(Placed& content, const YamlMap& map) {
+  const std::string group = read_light_group(map);
+  if (group.empty()) return;
+  for (Model::Node& node : content.nodes) node.light_group = group;
+  for (Light& light : content.lights) light.light_group = group;
+}
+
+std::string read_light_group(const YamlMap& map) {
+  const auto view = map.find("light_group");
+  if (!view) return {};
+  const std::string name = view->text();
+  if (name.empty() || name.find('=') != std::string::npos)
+    view->fail("the name of a light group is a text without '='");
+  return name;
 }
 
 Placed read_objects(YamlScene& scene, const YamlView& list) {

@@ -90,6 +90,10 @@ bool is_shape(std::string_view key);
 /// Appends a copy of `part` at `place`.
 void append(Placed& all, const Placed& part, const Eigen::Affine3d& place, const YamlView& view);
 [[nodiscard]] Placed read_objects(YamlScene& scene, const YamlView& list);
+/// `light_group`; empty if not given.
+[[nodiscard]] std::string read_light_group(const YamlMap& map);
+/// The same for everything that an object or light is made of.
+void put_in_group(Placed& content, const YamlMap& map);
 
 // ---- yaml_lights.cpp ----
 

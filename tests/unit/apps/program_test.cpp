@@ -187,6 +187,118 @@ TEST_F(AtriumRun, QuietIsSilentAndThreadsDoNotChangeTheImage) {
   EXPECT_EQ(read_file(folder / "1.pfm"), read_file(folder / "2.pfm"));
 }
 
+TEST_F(AtriumRun, LightGroupsAreDimmedAndSolvesGoOn) {
+  folder.write("s.yaml", R"(atrium: 1
+materials: {white: {body: 0.5}}
+objects: [{name: room, box: {size: [4, 3, 4], inside: true}, material: white}]
+lights:
+  - {name: left, point: {position: [-1, 0.5, 0], intensity: 100}}
+  - {name: right, point: {position: [1, 0.5, 0], intensity: 50}}
+cameras: [{name: eye, perspective: {eye: [0, 0, 1.5], target: [0, 0, 0]}}]
+)");
+  const std::string rest = " --quality draft --quiet ";
+  const Result solve = run(folder, "solve s.yaml --light-groups --keep-rows -o s.atrium" + rest);
+  ASSERT_EQ(solve.code, 0) << solve.err;
+  const Result info = run(folder, "info s.atrium");
+  EXPECT_NE(info.out.find("  left\n  right\n"), std::string::npos) << info.out;
+  ASSERT_EQ(run(folder, "reweight s.atrium --set left=0 -o dim.atrium").code, 0);
+  EXPECT_NE(run(folder, "info dim.atrium").out.find("left x 0"), std::string::npos);
+  expect_error(run(folder, "reweight s.atrium --set middle=1 -o x.atrium"), 2, "'left', 'right'");
+  expect_error(run(folder, "reweight s.atrium --set left=-1 -o x.atrium"), 2, "left=-1");
+  expect_error(run(folder, "reweight s.atrium --set left -o x.atrium"), 2, "NAME=FACTOR");
+  expect_error(run(folder, "render s.yaml -o x.pfm --quiet --size 24x18 --solution dim.atrium"), 2, "dimmed");
+  // Nothing is left to do, so nothing changes.
+  const Result again =
+      run(folder, "solve s.yaml --light-groups --keep-rows --solution s.atrium -o t.atrium" + rest);
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(read_file(folder / "s.atrium"), read_file(folder / "t.atrium"));
+  expect_error(run(folder, "solve s.yaml --solution s.atrium -o u.atrium" + rest), 2, "go on from");
+  expect_error(run(folder, "solve s.yaml --solution dim.atrium -o u.atrium" + rest), 2, "go on from");
+  expect_error(run(folder, "solve s.yaml --solver matrix --light-groups -o u.atrium" + rest), 2,
+               "light groups");
+}
+
+/// The text of one member of a JSON object at the top, with everything in it.
+std::string json_member(const std::string& json, const std::string& name) {
+  const std::size_t from = json.find("\n  \"" + name + "\"");
+  return from == std::string::npos ? "" : json.substr(from, json.find("\n  }", from) - from);
+}
+
+TEST_F(AtriumRun, StatisticsSayWhichErrorIsMeant) {
+  const std::string solve = "solve a.obj -o a.atrium --quality draft --quiet --stats s.json ";
+  const auto error = [&] { return json_member(read_file(folder / "s.json"), "error"); };
+  constexpr auto none = std::string::npos;
+
+  run(folder, solve);
+  EXPECT_NE(error().find("\"target\": null"), none) << error();
+  EXPECT_NE(error().find("\"ci\": null"), none) << error();
+  EXPECT_NE(error().find("\"estimate\": 0.0"), none) << error();
+  EXPECT_NE(error().find("\"mesh\": 0.0"), none) << error();
+
+  run(folder, solve + "--error 0.125");
+  EXPECT_NE(error().find("\"target\": 0.125"), none) << error();
+  EXPECT_NE(error().find("\"ci\": null"), none) << error();
+
+  run(folder, solve + "--error 0.125 --probes 16");
+  EXPECT_NE(error().find("\"target\": 0.125"), none) << error();
+  EXPECT_NE(error().find("\"ci\": ["), none) << error();
+  EXPECT_NE(error().find("\"verdict\": \""), none) << error();
+
+  // A picture's own error has neither target nor interval; that of its radiosity is beside it.
+  run(folder, "render a.obj -o a.pfm --size 24x18 --samples 2 --quality draft --probes 16 --quiet "
+              "--stats s.json");
+  EXPECT_NE(error().find("\"target\": null"), none) << error();
+  EXPECT_EQ(error().find("\"verdict\""), none) << error();
+  const std::string radiosity = json_member(read_file(folder / "s.json"), "radiosity");
+  EXPECT_NE(radiosity.find("\"verdict\": \""), none) << radiosity;
+}
+
+// Grey: one lane, less memory. The rays are the same.
+TEST_F(AtriumRun, GreyScenesAreSolvedInOneLane) {
+  const auto solve = [&] {
+    EXPECT_EQ(run(folder, "solve a.obj -o a.atrium --quality draft --quiet --stats s.json").code, 0);
+    return read_file(folder / "s.json");
+  };
+  const auto number = [](const std::string& stats, const std::string& name) {
+    const std::size_t at = stats.find("\"" + name + "\": ");
+    return at == std::string::npos ? -1.0 : std::stod(stats.substr(at + name.size() + 4));
+  };
+  const std::string grey = solve();
+  std::string red = kLitFloorMaterials;
+  red.replace(red.find("Kd 0.5 0.5 0.5"), 14, "Kd 0.5 0.4 0.3");
+  folder.write("a.mtl", red);
+  const std::string colour = solve();
+  EXPECT_NE(grey.find("\"spectrum\": \"1 grey lane\""), std::string::npos) << grey;
+  EXPECT_NE(colour.find("\"spectrum\": \"3 RGB lanes\""), std::string::npos) << colour;
+  EXPECT_GT(number(grey, "rays.row"), 0.0);
+  EXPECT_EQ(number(grey, "rays.row"), number(colour, "rays.row"));
+  // Of fields; variances have no lanes.
+  EXPECT_LT(number(grey, "fields"), 0.6 * number(colour, "fields"));
+}
+
+TEST_F(AtriumRun, RenderSolvesForItsViewsUnlessTheSolutionIsKept) {
+  const std::string render =
+      "render a.obj -o a.pfm --size 24x18 --samples 2 --quality draft --quiet --stats s.json ";
+  ASSERT_EQ(run(folder, render).code, 0);
+  EXPECT_NE(read_file(folder / "s.json").find("\"effort\": \"views\""), std::string::npos);
+  ASSERT_EQ(run(folder, render + "--save-solution a.atrium").code, 0);
+  EXPECT_NE(read_file(folder / "s.json").find("\"effort\": \"everywhere\""), std::string::npos);
+}
+
+TEST_F(AtriumRun, MemoryLimitWarnsAndRefuses) {
+  const std::string solve = "solve a.obj -o a.atrium --quality draft --quiet --stats s.json ";
+  const Result less = run(folder, solve + "--memory-limit 10");
+  EXPECT_EQ(less.code, 0) << less.err;
+  EXPECT_NE(less.err.find("memory limit: about "), std::string::npos) << less.err;
+  const std::string stats = read_file(folder / "s.json");
+  EXPECT_NE(stats.find("\"stopped_by\": \"memory limit\""), std::string::npos) << stats;
+  EXPECT_NE(stats.find("\"peak\": "), std::string::npos) << stats;
+  expect_error(run(folder, solve + "--memory-limit 0.01"), 1, "memory limit of 0.0 MB");
+  expect_error(run(folder, solve + "--memory-limit -1"), 2, "--memory-limit");
+  expect_error(run(folder, "render a.obj -o a.pfm --method path --memory-limit 10"), 2,
+               "--memory-limit");
+}
+
 TEST_F(AtriumRun, SolutionsAreReusedAndCheckedAgainstTheScene) {
   const std::string small = " --size 24x18 --samples 2 --quality draft --quiet ";
   const Result solve = run(folder, "solve a.obj -o a.atrium --quality draft --quiet");

@@ -71,6 +71,32 @@ TEST(Refine, AreasAreConserved) {
   }
 }
 
+// No element of the floor, however small, lies on both sides of the wall that crosses it.
+TEST(Refine, WallsStayBetweenElements) {
+  const Scene scene = test::walled_floor();
+  Elements e = make_elements(scene, {.element_size = 0.5});
+  ASSERT_FALSE(e.layout.cuts.empty());
+  const Vec3f on_wall(1.3f, -0.1f, 0.0f);
+  const Vec3f across = Vec3f(3.2f, -0.3f, 0.0f).normalized();
+  std::mt19937 random(7);
+  for (int round = 0; round < 4; ++round) {
+    for (std::uint32_t i = 0; i < e.layout.element_count(); ++i) {
+      float low = 0.0f;
+      float high = 0.0f;
+      for (std::uint32_t p = e.first_piece[i]; p < e.first_piece[i + 1]; ++p) {
+        const ElementPiece piece = e.pieces[p];
+        if (piece.object.value != 0) continue;
+        for (const Vec3f& c : piece.corners) {
+          low = std::min(low, (c - on_wall).dot(across));
+          high = std::max(high, (c - on_wall).dot(across));
+        }
+      }
+      EXPECT_LT(std::min(-low, high), 1e-5f) << i;
+    }
+    e = refine(scene, e, test::random_marks(e, 0.3, random)).elements;
+  }
+}
+
 TEST(Refine, LeavesThatTouchDifferByOneLevelAtMost) {
   const Scene scene = test::wall_with_notch();
   const Elements e = test::refined_at(scene, Vec3f(1.3f, 1.1f, 0.0f), 0.5, 6);

@@ -36,6 +36,20 @@ inline scene::Scene scraps(std::uint32_t count) {
   return maker.take();
 }
 
+// A floor of 4 x 3 m that walls askew divide into three, with a doorway.
+inline scene::Scene walled_floor() {
+  SceneMaker maker;
+  const auto m = maker.material(diffuse(0.5));
+  maker.quad(m, {0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0});
+  const auto wall = [&](float x0, float y0, float x1, float y1) {
+    maker.quad(m, {x0, y0, 0}, {x1, y1, 0}, {x1, y1, 2}, {x0, y0, 2});
+  };
+  wall(1.3f, -0.1f, 1.6f, 3.1f);
+  wall(1.45f, 1.5f, 2.9f, 1.7f);
+  wall(3.6f, 1.8f, 4.1f, 1.87f);
+  return maker.take();
+}
+
 inline std::vector<scene::Scene> refinable_scenes() {
   std::vector<scene::Scene> scenes{wall_with_notch()};
   SceneMaker sphere;
@@ -46,6 +60,7 @@ inline std::vector<scene::Scene> refinable_scenes() {
   sliver.object(m, {{0, 0, 0}, {20, 0, 0}, {20, 0.001f, 0}}, {{0, 1, 2}});
   sliver.quad(m, {101, 50, 3}, {104, 51, 3.5f}, {103.5f, 53, 4.7f}, {100.5f, 52, 4.2f});
   scenes.push_back(sliver.take());
+  scenes.push_back(walled_floor());
   return scenes;
 }
 

@@ -25,6 +25,7 @@ Solution sample_solution() {
   Solution s;
   s.scene_hash = 0x0123456789abcdefULL;
   s.basis = "3 RGB lanes";
+  s.state = {'a', '\0', 'b'};
   s.options = "solver rows";
   SurfaceField& f = s.field;
   f.lanes = 3;
@@ -40,7 +41,9 @@ Solution sample_solution() {
   }
   constexpr std::uint32_t kNone = SurfaceField::kNone;
   f.nodes = {0, 1, SurfaceField::kInner | 4U, kNone, kNone, 2, kNone, kNone};
-  f.triangle_facet = {0, 1, SurfaceField::kNone};
+  f.triangle_facet = {0, SurfaceField::kCut | 0, kNone};
+  f.cuts = {{{1, 2, 3}, {0, 1, 0}, {1, SurfaceField::kCut | 1}},
+            {{4, 5, 6}, {1, 0, 0}, {kNone, 0}}};
   f.element_facet = {0, 0, 1};
   f.element_level = {0, 0, 1};
   f.element_x = {0, 1, 1};
@@ -66,6 +69,7 @@ TEST(SolutionIo, RoundTrip) {
   EXPECT_EQ(a.scene_hash, b.scene_hash);
   EXPECT_EQ(a.basis, b.basis);
   EXPECT_EQ(a.options, b.options);
+  EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.field.unit, b.field.unit);
   EXPECT_EQ(a.field.nodes, b.field.nodes);
   EXPECT_EQ(a.field.element_level, b.field.element_level);
@@ -118,6 +122,9 @@ TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
   refused([](SurfaceField& f) { f.element_x[1] = 2; });
   refused([](SurfaceField& f) { f.element_facet[0] = 7; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
+  refused([](SurfaceField& f) { f.triangle_facet[0] = SurfaceField::kCut | 2; });
+  refused([](SurfaceField& f) { f.cuts[1].child[0] = SurfaceField::kCut | 1; });  // round in circles
+  refused([](SurfaceField& f) { f.cuts[0].child[0] = 2; });
   refused([](SurfaceField& f) { f.facets[1].first_cell = 7; });
   refused([](SurfaceField& f) { f.facets[1].nx = 0; });
   refused([](SurfaceField& f) { f.irradiance.direct.pop_back(); });
@@ -160,6 +167,21 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   EXPECT_EQ(skies.size(), 5u);
   EXPECT_TRUE(changed([](Scene& s) { s.medium_extinction = 0.1; }));
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
+
+  using atrium::scene::hash_scene_but_reflectance;
+  scene.materials[0].medium = atrium::material::Material::Medium::Opaque;
+  scene.materials[0].k_df = 1.0;
+  scene.materials[0].k_rg = 0.0;
+  scene.materials[0].body_reflectance = 0.5;
+  Scene other = scene;
+  other.materials[0].body_reflectance = 0.4;
+  EXPECT_NE(hash_scene(other), hash_scene(scene));
+  EXPECT_EQ(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
+  other.materials[0].body_reflectance = 0.0;  // then there is no diffuse surface any more
+  EXPECT_NE(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
+  other = scene;
+  other.materials[0].emission = 1.0;
+  EXPECT_NE(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
 }
 
 }  // namespace

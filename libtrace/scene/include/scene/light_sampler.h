@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,11 +19,13 @@ template <int N>
 struct LightSample {
   Vec3f wi;               ///< unit, towards the light
   float distance = 0.0f;  ///< to the sampled point; infinity for sun and environment
+  Vec3f end = Vec3f::Zero();  ///< where a shadow ray ends: the point, off an emissive surface; finite lights only
   Spectrum<N> radiance;   ///< radiance of the light towards the point; for Dirac lights the
                           ///< irradiance on a plane facing them
   float pdf = 0.0f;  ///< [1/sr] including the choice of the light; Dirac: probability of the choice
-  bool dirac = false;       ///< point, spot, directional: cannot be hit by chance
-  std::uint32_t light = 0;  ///< index for light groups: lights first, then emissive triangles
+  bool dirac = false;        ///< point, spot, directional: cannot be hit by chance
+  std::uint32_t light = 0;  ///< of lights at a place: Scene::lights, then emissive triangles
+  std::uint32_t source = 0;  ///< number of light_groups.h; of the sky: see LightSampler::sky_parts
 };
 
 /// A triangle of a surface that emits.
@@ -37,12 +40,13 @@ template <int N>
 struct EmissionSample {
   Vec3f origin;
   Vec3f direction;
-  Spectrum<N> weight;  ///< flux carried by this sample: Phi estimate for one sample
+  Spectrum<N> weight;        ///< flux carried by this sample: Phi estimate for one sample
+  std::uint32_t source = 0;  ///< number of light_groups.h
 };
 
 /// Chooses lights for next event estimation and photons: a bounding hierarchy over all lights and
-/// emissive triangles with their power, extent and orientation (Conty Estevez & Kulla 2018); sun and
-/// sky besides, within rooms mostly through their openings.
+/// emissive triangles with their power, extent and orientation (Conty Estevez & Kulla 2018); sun
+/// and sky besides, within rooms mostly through their openings.
 template <int N>
 class LightSampler {
  public:
@@ -77,6 +81,11 @@ class LightSampler {
   [[nodiscard]] Spectrum<N> emitted(const SurfacePoint& point, const Vec3f& wo) const;
   /// Radiance of the environment seen in a direction; zero without one.
   [[nodiscard]] Spectrum<N> environment(const Vec3f& direction) const;
+
+  /// A sample whose source is that of the environment may also show discs that stand before it:
+  /// calls part(source, radiance) for each; the parts add up to LightSample::radiance.
+  void sky_parts(const LightSample<N>& sample,
+                 const std::function<void(std::uint32_t, const Spectrum<N>&)>& part) const;
 
   /// A starting ray for light tracing, by power.
   [[nodiscard]] std::optional<EmissionSample<N>> sample_emission(float u_choice,

@@ -57,6 +57,7 @@ struct Mesh {
 /// A mesh with a material at a place.
 struct Object {
   std::string name;
+  std::string light_group;  ///< that the scene puts its emission in, empty: none said
   MeshId mesh;
   MaterialId material;
   bool instanced = false;  ///< the mesh is shared: to_scene applies to every vertex

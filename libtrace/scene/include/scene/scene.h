@@ -23,6 +23,7 @@ struct Model {
     MeshId mesh;
     MaterialId material;
     Eigen::Affine3d to_world = Eigen::Affine3d::Identity();
+    std::string light_group = {};  ///< that the scene puts its emission in, empty: none said
   };
   std::vector<MeshData> meshes;
   std::vector<material::Material> materials;

@@ -67,6 +67,9 @@ class Shading {
   /// The same between a surface point and a light sample taken from it.
   [[nodiscard]] Spectrum<N> visibility(const SurfacePoint& from, const LightSample<N>& light,
                                        Counters& counters, Counter kind) const;
+  /// The same from a point off all surfaces by more than the error of its position.
+  [[nodiscard]] Spectrum<N> visibility(const Vec3f& origin, const LightSample<N>& light,
+                                       Counters& counters, Counter kind) const;
 
   /// Does the air absorb? If not, through_medium() need not be asked.
   [[nodiscard]] bool has_medium() const { return has_medium_; }

@@ -28,7 +28,7 @@ class SphericalTriangle {
   [[nodiscard]] double solid_angle() const { return solid_angle_; }
   /// Large enough for sample() to be accurate and small enough to be a triangle at all; outside,
   /// sampling by area is as good.
-  [[nodiscard]] bool usable() const { return solid_angle_ > 1e-4 && solid_angle_ < 6.2; }
+  [[nodiscard]] bool usable() const { return solid_angle_ > 1e-4 && solid_angle_ < 6.2831; }
 
   /// Unit direction with density 1 / solid_angle(). Only if usable().
   [[nodiscard]] Vec3d sample(const Vec2f& u) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -35,6 +36,14 @@ struct SurfaceField {
     std::uint32_t first_cell = 0;  ///< into nodes
     std::uint8_t clump = 0;        ///< many tiny regions as one cell: its plane means little
   };
+  /// A plane that divides a triangle between regions that other surfaces part (a wall on a floor).
+  /// Children: before the plane, behind it; facets, kNone, or kCut | index of a cut further on.
+  struct Cut {
+    Vec3f point, normal;
+    std::array<std::uint32_t, 2> child;
+  };
+  /// In triangle_facet and Cut::child: the rest is the index of a cut.
+  static constexpr std::uint32_t kCut = 0x80000000U;
   /// What is stored per element and side. Empty arrays: not computed because not needed.
   /// Irradiance [W/m^2 or lx-related lanes], index (element * 2 + side) * lanes + lane.
   struct Quantities {
@@ -49,7 +58,9 @@ struct SurfaceField {
   /// (x, y) = 00, 10, 01, 11. A node is an element, kNone, or kInner | index of its first child,
   /// which is above its own index.
   std::vector<std::uint32_t> nodes;
-  std::vector<std::uint32_t> triangle_facet;    ///< by Object::first_triangle + triangle, or kNone
+  /// By Object::first_triangle + triangle: facet, kNone, or kCut | index of the first cut.
+  std::vector<std::uint32_t> triangle_facet;
+  std::vector<Cut> cuts;
   std::vector<std::uint32_t> element_facet;
   std::vector<std::uint8_t> element_level;      ///< 0: a cell of the facet's grid; each level halves
   std::vector<std::uint32_t> element_x;         ///< cell coordinates at the element's level:
@@ -92,6 +103,12 @@ struct SurfaceField {
     return c;
   }
 
+  [[nodiscard]] static bool is_cut(std::uint32_t i) { return (i & kCut) != 0 && i != kNone; }
+  /// Facet under a point of a triangle, or kNone.
+  [[nodiscard]] std::uint32_t facet_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
+                                       const Vec3f& position) const;
+  /// Element of a facet under a point in its plane, or kNone if nothing of it is near.
+  [[nodiscard]] std::uint32_t element_of_facet(std::uint32_t facet, const Vec3f& position) const;
   /// Element under a point, or kNone (no facet, or a cell that nothing was found in).
   [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
                                          const Vec3f& position) const;

@@ -1,0 +1,344 @@
+#include "division.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "polygon.h"
+
+namespace atrium::radiosity {
+namespace {
+
+using scene::SurfaceField;
+constexpr std::uint32_t kNone = SurfaceField::kNone;
+constexpr std::uint32_t kCut = SurfaceField::kCut;
+// In cells: facets below the first are not divided, regions below the second get no element. Where
+// models are full of things that touch and overlap, slivers would outnumber all other elements.
+constexpr double kSmallestFacet = 1e-2;
+constexpr double kSmallestRegion = 1e-3;
+constexpr double kGap = 0.02;        // cells; narrower gaps between barriers connect nothing
+constexpr double kWallLength = 2.0;  // cells; longer barriers part what is beside their ends, too
+constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
+
+/// A corner, and which line the edge to the next one lies on.
+struct Vertex {
+  Vec3d p;
+  std::uint32_t line = kNone;
+};
+
+/// A convex part of one of the facet's triangles.
+struct Fragment {
+  std::vector<Vertex> corners;
+  std::uint32_t triangle = 0;  // position in the facet's triangles
+};
+
+/// A line that parts fragments: an edge between two triangles or a cut through one.
+struct Line {
+  Vec3d point, direction;
+};
+
+double along(const Line& line, const Vec3d& p) { return (p - line.point).dot(line.direction); }
+
+Barrier clipped(const Barrier& b, const Vec3d& point, const Vec3d& normal, double sign) {
+  const double da = sign * (b.a - point).dot(normal);
+  const double db = sign * (b.b - point).dot(normal);
+  Barrier out = b;
+  if (da < 0.0 && db > 0.0) out.a = b.a + da / (da - db) * (b.b - b.a);
+  if (db < 0.0 && da > 0.0) out.b = b.a + da / (da - db) * (b.b - b.a);
+  if (da <= 0.0 && db <= 0.0) out.b = out.a;
+  return out;
+}
+
+class Divider {
+ public:
+  Divider(const BarrierFinder& finder, scene::ObjectId object, const Corners& corners,
+          const Facet& facet, double cell)
+      : finder_(finder), object_(object), corners_(corners), facet_(facet), cell_(cell) {
+    double size = 0.0;
+    for (const std::uint32_t t : facet.triangles)
+      for (const Vec3f& c : corners[t])
+        size = std::max(size, static_cast<double>(c.cwiseAbs().maxCoeff()));
+    tolerance_ = 0x1p-20 * size;  // some roundings of a coordinate
+  }
+
+  Division divide() {
+    find_barriers();
+    if (barriers_.empty() || barriers_.size() > kMostBarriers) return {};
+    number_edges();
+    cut_triangles();
+    connect();
+    return collect();
+  }
+
+ private:
+  void find_barriers() {
+    first_.push_back(0);
+    for (const std::uint32_t t : facet_.triangles) {
+      for (const Barrier& b : finder_.on(object_, t, 0.01 * cell_))
+        if ((b.b - b.a).norm() > tolerance_) barriers_.push_back(b);
+      first_.push_back(barriers_.size());
+      if (barriers_.size() > kMostBarriers) return;
+    }
+  }
+
+  using EdgeKey = std::array<float, 6>;
+  static EdgeKey edge_key(const Vec3f& a, const Vec3f& b) {
+    const EdgeKey k{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+    const EdgeKey turned{b.x(), b.y(), b.z(), a.x(), a.y(), a.z()};
+    return std::min(k, turned);
+  }
+
+  /// Edges of two triangles of the facet get a line; others border nothing.
+  void number_edges() {
+    std::map<EdgeKey, int> uses;
+    for (const std::uint32_t t : facet_.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        ++uses[edge_key(corners_[t][k], corners_[t][(k + 1) % 3])];
+    for (const auto& [key, count] : uses) {
+      if (count < 2) continue;
+      const Vec3d a(key[0], key[1], key[2]), b(key[3], key[4], key[5]);
+      edge_line_[key] = add_line(a, b - a);
+    }
+  }
+
+  std::uint32_t add_line(const Vec3d& point, const Vec3d& direction) {
+    lines_.push_back({point, direction.normalized()});
+    return static_cast<std::uint32_t>(lines_.size() - 1);
+  }
+
+  void cut_triangles() {
+    for (std::uint32_t i = 0; i < facet_.triangles.size(); ++i) {
+      const auto& c = corners_[facet_.triangles[i]];
+      Fragment whole;
+      whole.triangle = i;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto it = edge_line_.find(edge_key(c[k], c[(k + 1) % 3]));
+        whole.corners.push_back({c[k].cast<double>(), it == edge_line_.end() ? kNone : it->second});
+      }
+      normal_ = (whole.corners[1].p - whole.corners[0].p)
+                    .cross(whole.corners[2].p - whole.corners[0].p)
+                    .normalized();
+      std::uint32_t root = static_cast<std::uint32_t>(fragments_.size());
+      fragments_.push_back(std::move(whole));
+      std::vector<Barrier> mine(barriers_.begin() + static_cast<std::ptrdiff_t>(first_[i]),
+                                barriers_.begin() + static_cast<std::ptrdiff_t>(first_[i + 1]));
+      // Long ones first: walls part the room before table legs part its halves.
+      std::stable_sort(mine.begin(), mine.end(), [](const Barrier& x, const Barrier& y) {
+        return (x.b - x.a).squaredNorm() > (y.b - y.a).squaredNorm();
+      });
+      for (const Barrier& b : mine) root = insert(root, b);
+      root_.push_back(root);
+    }
+  }
+
+  /// Cuts the fragments below a tree's node that a barrier passes through. \return the new node.
+  std::uint32_t insert(std::uint32_t node, const Barrier& b) {
+    if ((b.b - b.a).norm() <= tolerance_) return node;
+    if ((node & kCut) == 0) return cut(node, b);
+    const std::uint32_t n = node & ~kCut;
+    const Vec3d point = nodes_[n].point.cast<double>();
+    const Vec3d normal = nodes_[n].normal.cast<double>();
+    for (const std::size_t side : {0U, 1U}) {
+      const std::uint32_t child =
+          insert(nodes_[n].child[side], clipped(b, point, normal, side == 0 ? 1.0 : -1.0));
+      nodes_[n].child[side] = child;
+    }
+    return node;
+  }
+
+  std::uint32_t cut(std::uint32_t leaf, const Barrier& b) {
+    const Vec3d direction = (b.b - b.a).normalized();
+    const Vec3d across = normal_.cross(direction).normalized();
+    double low = 0.0, high = 0.0;
+    for (const Vertex& v : fragments_[leaf].corners) {
+      low = std::min(low, (v.p - b.a).dot(across));
+      high = std::max(high, (v.p - b.a).dot(across));
+    }
+    if (low > -tolerance_ || high < tolerance_) return leaf;  // along its border
+    const std::uint32_t line = add_line(b.a, direction);
+    Fragment front = half(fragments_[leaf], b.a, across, line);
+    Fragment back = half(fragments_[leaf], b.a, -across, line);
+    if (front.corners.size() < 3 || back.corners.size() < 3) return leaf;
+    fragments_[leaf] = std::move(front);
+    const auto other = static_cast<std::uint32_t>(fragments_.size());
+    fragments_.push_back(std::move(back));
+    nodes_.push_back({b.a.cast<float>(), across.cast<float>(), {leaf, other}});
+    return kCut | static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+
+  /// The part in front of a cut; its new edge lies on the cut's line.
+  static Fragment half(const Fragment& in, const Vec3d& point, const Vec3d& normal,
+                       std::uint32_t line) {
+    Fragment out;
+    out.triangle = in.triangle;
+    const std::size_t n = in.corners.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vertex& a = in.corners[i];
+      const Vertex& b = in.corners[(i + 1) % n];
+      const double da = (a.p - point).dot(normal);
+      const double db = (b.p - point).dot(normal);
+      if (da >= 0.0) out.corners.push_back({a.p, da == 0.0 && db < 0.0 ? line : a.line});
+      if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0))
+        out.corners.push_back({a.p + da / (da - db) * (b.p - a.p), db < 0.0 ? line : a.line});
+    }
+    return out;
+  }
+
+  // ---- which fragments hang together ----
+
+  struct Use {
+    std::uint32_t fragment;
+    double low, high;  // along the line
+  };
+
+  void connect() {
+    parent_.resize(fragments_.size());
+    std::iota(parent_.begin(), parent_.end(), 0U);
+    std::vector<std::vector<Use>> uses(lines_.size());
+    for (std::uint32_t f = 0; f < fragments_.size(); ++f) {
+      const auto& c = fragments_[f].corners;
+      for (std::size_t k = 0; k < c.size(); ++k) {
+        if (c[k].line == kNone) continue;
+        const double s = along(lines_[c[k].line], c[k].p);
+        const double t = along(lines_[c[k].line], c[(k + 1) % c.size()].p);
+        uses[c[k].line].push_back({f, std::min(s, t), std::max(s, t)});
+      }
+    }
+    for (std::uint32_t line = 0; line < lines_.size(); ++line) connect_across(line, uses[line]);
+  }
+
+  void connect_across(std::uint32_t line, const std::vector<Use>& uses) {
+    if (uses.size() < 2) return;
+    const std::vector<Interval> closed = covered(lines_[line]);
+    for (std::size_t i = 0; i < uses.size(); ++i)
+      for (std::size_t j = i + 1; j < uses.size(); ++j) {
+        const double low = std::max(uses[i].low, uses[j].low);
+        const double high = std::min(uses[i].high, uses[j].high);
+        if (high - low > 4.0 * tolerance_ && is_open(low, high, closed))
+          parent_[root_of(uses[i].fragment)] = root_of(uses[j].fragment);
+      }
+  }
+
+  using Interval = std::pair<double, double>;
+
+  /// Where barriers lie on a line, ascending; what all but touches is one.
+  std::vector<Interval> covered(const Line& line) const {
+    std::vector<Interval> all;
+    const auto off = [&](const Vec3d& p) {
+      return (p - line.point - along(line, p) * line.direction).norm();
+    };
+    for (const Barrier& b : barriers_) {
+      if (off(b.a) > 4.0 * tolerance_ || off(b.b) > 4.0 * tolerance_) continue;
+      all.push_back(std::minmax(along(line, b.a), along(line, b.b)));
+    }
+    std::sort(all.begin(), all.end());
+    std::vector<Interval> out;
+    for (const Interval& i : all) {
+      if (!out.empty() && i.first - out.back().second < kGap * cell_)
+        out.back().second = std::max(out.back().second, i.second);
+      else
+        out.push_back(i);
+    }
+    return out;
+  }
+
+  /// Does a border between fragments connect them? Next to a wall's own line it does not, doorway
+  /// or not: elements on both sides of the wall would be one. A short barrier (a table's leg) has
+  /// to cover the border; one without any barrier is open however short it is.
+  bool is_open(double low, double high, const std::vector<Interval>& closed) const {
+    double at = low;
+    double widest = 0.0;
+    for (const auto& [from, to] : closed) {
+      const double length = to - from;
+      if (length > kWallLength * cell_ && from - high < length && low - to < length) return false;
+      if (from < high) widest = std::max(widest, std::min(from, high) - at);
+      if (from < high) at = std::max(at, to);
+    }
+    widest = std::max(widest, high - at);
+    return widest > std::min(kGap * cell_, 0.5 * (high - low));
+  }
+
+  std::uint32_t root_of(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+  // ---- the result ----
+
+  Division collect() {
+    Division out;
+    std::map<std::uint32_t, std::uint32_t> facet_of_root;
+    std::vector<std::uint32_t> facet_of(fragments_.size());
+    for (std::uint32_t f = 0; f < fragments_.size(); ++f)
+      facet_of[f] =
+          facet_of_root.try_emplace(root_of(f), static_cast<std::uint32_t>(facet_of_root.size()))
+              .first->second;
+    if (facet_of_root.size() < 2) return {};
+    out.facets.resize(facet_of_root.size());
+    for (std::uint32_t f = 0; f < fragments_.size(); ++f) add(out, fragments_[f], facet_of[f]);
+    const auto is_sliver = [&](const Facet& f) {
+      return f.triangles.empty() || f.area < kSmallestRegion * cell_ * cell_;
+    };
+    std::vector<std::uint32_t> kept(out.facets.size(), kNone);
+    std::uint32_t count = 0;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      Facet& f = out.facets[k];
+      if (is_sliver(f)) continue;
+      f.normal = facet_.normal;
+      f.axis = facet_.axis;
+      f.centre /= f.area;
+      kept[k] = count++;
+    }
+    if (count == 0) return {};
+    std::erase_if(out.facets, [&](const Facet& f) { return is_sliver(f); });
+    out.nodes = nodes_;
+    const auto leaf = [&](std::uint32_t& node) {
+      if ((node & kCut) == 0) node = kept[facet_of[node]];
+    };
+    for (SurfaceField::Cut& n : out.nodes)
+      for (std::uint32_t& child : n.child) leaf(child);
+    out.root = root_;
+    for (std::uint32_t& r : out.root) leaf(r);
+    return out;
+  }
+
+  void add(Division& out, const Fragment& fragment, std::uint32_t facet) const {
+    const auto& c = fragment.corners;
+    for (std::size_t k = 1; k + 1 < c.size(); ++k) {
+      const double area = 0.5 * (c[k].p - c[0].p).cross(c[k + 1].p - c[0].p).norm();
+      if (!(area > 0.0)) continue;
+      Facet& f = out.facets[facet];
+      f.triangles.push_back(static_cast<std::uint32_t>(out.corners.size()));
+      f.area += area;
+      f.centre += area / 3.0 * (c[0].p + c[k].p + c[k + 1].p);
+      out.corners.push_back({c[0].p.cast<float>(), c[k].p.cast<float>(), c[k + 1].p.cast<float>()});
+      out.original.push_back(facet_.triangles[fragment.triangle]);
+    }
+  }
+
+  const BarrierFinder& finder_;
+  scene::ObjectId object_;
+  const Corners& corners_;
+  const Facet& facet_;
+  double cell_, tolerance_ = 0.0;
+  Vec3d normal_ = Vec3d::UnitZ();  // of the triangle being cut
+  std::vector<Barrier> barriers_;
+  std::vector<std::size_t> first_;  // barrier of each triangle
+  std::map<EdgeKey, std::uint32_t> edge_line_;
+  std::vector<Line> lines_;
+  std::vector<Fragment> fragments_;
+  std::vector<SurfaceField::Cut> nodes_;
+  std::vector<std::uint32_t> root_, parent_;
+};
+
+}  // namespace
+
+Division divide_facet(const BarrierFinder& barriers, scene::ObjectId object, const Corners& corners,
+                      const Facet& facet, double cell) {
+  if (facet.clump || facet.area < kSmallestFacet * cell * cell) return {};
+  return Divider(barriers, object, corners, facet, cell).divide();
+}
+
+}  // namespace atrium::radiosity
