@@ -8,6 +8,7 @@
 #include "scene/image_io.h"
 #include "scene/luminaire.h"
 #include "scene/output_file.h"
+#include "scene/portal.h"
 #include "scene/scene_io.h"
 #include "scene/solution_io.h"
 #include "statistics.h"
@@ -198,6 +199,20 @@ std::vector<std::string> light_list(const scene::Scene& scene, const scene::Feat
   return list;
 }
 
+/// Openings that sky and sun are sampled through, and why each was taken.
+std::vector<std::string> opening_list(const scene::RayQuery& query) {
+  std::vector<std::string> list;
+  for (const scene::Opening& o : scene::find_openings(query)) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  ": %.3g m^2 at (%.3f, %.3f, %.3f), open sky %.0f %% outside, %.0f %% inside",
+                  o.area, o.center.x(), o.center.y(), o.center.z(), 100.0 * o.outside,
+                  100.0 * o.inside);
+    list.push_back(o.reason + text);
+  }
+  return list;
+}
+
 /// Which form of F the materials' interfaces use, and how far it may be off.
 std::vector<std::string> fresnel_list(const scene::Scene& scene,
                                       const material::SpectralBasis& basis) {
@@ -240,6 +255,7 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   r.add("reason for spectrum", loaded.basis_reason);
   r.list("forms of the Fresnel reflectance", fresnel_list(scene, loaded.basis.packs()[0]));
   r.list("lights", light_list(scene, loaded.features));
+  r.list("openings", opening_list(*loaded.query));
   std::vector<std::string> cameras;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     cameras.push_back(camera_text(scene.cameras[i], i));

@@ -84,10 +84,10 @@ std::vector<Finding> run(const Case& c) {
   return findings;
 }
 
-std::vector<Case> all_cases() {
+std::vector<Case> all_cases(Extent extent) {
   std::vector<Case> all;
   for (const auto& part : {form_factor_cases(), enclosure_cases(), specular_cases(), cie171_cases(),
-                           convergence_cases()})
+                           cie171_daylight_cases(extent), convergence_cases()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

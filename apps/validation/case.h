@@ -57,12 +57,16 @@ struct Finding {
 /// Source: Abramowitz & Stegun 1964, Eq. 26.7.3.
 [[nodiscard]] double student_p(double t, int degrees_of_freedom);
 
+/// Quick: of the sky types only 5, 12 and 16 where one follows from the other but for its formula.
+enum class Extent { Quick, Full };
+
 // The cases by section, in the order of the table.
 [[nodiscard]] std::vector<Case> form_factor_cases();
 [[nodiscard]] std::vector<Case> enclosure_cases();
 [[nodiscard]] std::vector<Case> specular_cases();
 [[nodiscard]] std::vector<Case> cie171_cases();
+[[nodiscard]] std::vector<Case> cie171_daylight_cases(Extent extent);
 [[nodiscard]] std::vector<Case> convergence_cases();
-[[nodiscard]] std::vector<Case> all_cases();
+[[nodiscard]] std::vector<Case> all_cases(Extent extent);
 
 }  // namespace atrium::validation

@@ -111,23 +111,15 @@ Case flux_conservation() {
   return c;
 }
 
-/// Transmittance of a clear pane at an angle: Fresnel by polarisation, reflections between the
-/// faces added up without interference: T = (1 - R) / (1 + R).
-double pane_transmittance(double n, double degrees) {
-  const double c = std::cos(degrees * kPi / 180), t = std::sqrt(1 - (1 - c * c) / (n * n));
-  const double s = std::pow((c - n * t) / (c + n * t), 2),
-               p = std::pow((n * c - t) / (n * c + t), 2);
-  return 0.5 * ((1 - s) / (1 + s) + (1 - p) / (1 + p));
-}
-
 Case glass() {
   constexpr double kIndex = 1.52;
   Case c = cie("5.5 directional transmittance of clear glass, n = 1.52, no absorption",
                "incoherent slab, T = (1 - R) / (1 + R) per polarisation, then averaged", 1);
   const std::vector<double> angles{0, 10, 20, 30, 40, 50, 60, 70, 80};
   for (const double a : angles)
-    c.quantities.push_back(
-        {"T at " + text(a) + " deg", pane_transmittance(kIndex, a), Kind::Point});
+    c.quantities.push_back({"T at " + text(a) + " deg",
+                            reference::pane_transmittance(kIndex, std::cos(a * kPi / 180)),
+                            Kind::Point});
   c.measure = [angles](std::uint64_t) {
     std::vector<double> values;
     for (const double a : angles) {

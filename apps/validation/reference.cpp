@@ -43,4 +43,11 @@ double corner_upright(double a, double b) {
   return (std::atan(b) - std::atan(b / x) / x) / (2 * std::numbers::pi);
 }
 
+double pane_transmittance(double n, double cosine) {
+  const double c = cosine, t = std::sqrt(1 - (1 - c * c) / (n * n));
+  const double s = std::pow((c - n * t) / (c + n * t), 2),
+               p = std::pow((n * c - t) / (n * c + t), 2);
+  return 0.5 * ((1 - s) / (1 + s) + (1 - p) / (1 + p));
+}
+
 }  // namespace atrium::validation::reference

@@ -21,4 +21,8 @@ using Polygon = std::vector<Vec3d>;
 [[nodiscard]] double corner_parallel(double a, double b);
 [[nodiscard]] double corner_upright(double a, double b);
 
+/// Transmittance of a clear pane of index n: Fresnel by polarisation, reflections between the faces
+/// added up without interference, T = (1 - R) / (1 + R). \param cosine  of incidence, in [0, 1].
+[[nodiscard]] double pane_transmittance(double n, double cosine);
+
 }  // namespace atrium::validation::reference

@@ -420,7 +420,10 @@ class SensorRun {
     for (const double s : spread) sum += s;
     const double target = world_.options.error * std::max(y, 0.01 * world_.mean_y);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      double samples = target > 0.0 ? spread[i] * sum / (target * target) : 0.0;
+      // A pilot that saw nothing says nothing of how much there is.
+      double samples = target > 0.0  ? spread[i] * sum / (target * target)
+                       : sum > 0.0 ? world_.options.max_rays
+                                   : 0.0;
       samples = std::clamp(samples, static_cast<double>(parts_[i].pilot),
                            std::max<double>(parts_[i].pilot, world_.options.max_rays));
       parts_[i].samples = in_groups(samples);

@@ -327,5 +327,35 @@ TEST(Measure, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)measure_direct(scene, fine, {.error = 0.0}), std::invalid_argument);
 }
 
+// A slit of 5 mm in a roof that nothing was told of: the pilot's rays all miss it, and yet the
+// reading must be as good as its rays allow, not the one lucky sample of the pilot's number.
+// Reference: a uniform sky's irradiance is pi L times the point-to-polygon factor.
+TEST(Measure, PilotThatSeesNothingIsNoAnswer) {
+  SceneMaker maker;
+  const auto black = maker.material(diffuse(0.0));
+  maker.quad(black, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0});
+  for (const float s : {-1.0f, 1.0f}) {
+    maker.quad(black, {2 * s, -2, 0}, {2 * s, 2, 0}, {2 * s, 2, 3}, {2 * s, -2, 3});
+    maker.quad(black, {-2, 2 * s, 0}, {2, 2 * s, 0}, {2, 2 * s, 3}, {-2, 2 * s, 3});
+    maker.quad(black, {0.0025f * s, -2, 3}, {0.0025f * s, 2, 3}, {2 * s, 2, 3}, {2 * s, -2, 3});
+  }
+  scene::Scene scene = maker.take();
+  scene.environment.emplace().radiance = 100.0;
+  scene.portals.find = false;
+  std::vector<Sensor> sensors;
+  for (const double x : {-1.5, -0.7, 0.0, 0.4, 1.1})
+    sensors.push_back({{x, 0.3, 0}, Vec3d::UnitZ()});
+  const auto readings = measure_direct(scene, sensors);
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::vector<Vec3d> slit{
+        {-0.0025, -2, 3}, {-0.0025, 2, 3}, {0.0025, 2, 3}, {0.0025, -2, 3}};
+    const double expected =
+        100.0 * kPi * point_to_polygon(sensors[i].position, Vec3d::UnitZ(), slit);
+    const Amount& e = readings[i].total;
+    EXPECT_LT(e.standard_error, 0.2 * expected) << i;
+    EXPECT_NEAR(e.y, expected, 4.0 * e.standard_error) << i;
+  }
+}
+
 }  // namespace
 }  // namespace atrium::radiosity

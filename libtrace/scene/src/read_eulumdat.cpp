@@ -56,7 +56,8 @@ class Lines {
     std::vector<double> values;
     for (int i = 0; i < count; ++i) {
       const double value = number(what, 0.0);
-      if (i > 0 && !(value > values.back())) fail(std::string(what) + " must increase");
+      if (i > 0 && !(value >= values.back() + kLeastStep))
+        fail(std::string(what) + " must increase");
       if (!(value <= most)) fail(std::string(what) + " must be at most " + std::to_string(most));
       values.push_back(value);
     }
@@ -202,6 +203,7 @@ Luminaire read_eulumdat(const std::filesystem::path& file) {
     l.opening.z() = std::max(l.opening.z(), in.number("height of the luminous area") * kMillimetre);
   in.number("downward flux fraction");
   const double output_ratio = in.number("light output ratio", 0.0) / 100.0;
+  if (!(output_ratio <= kMostCandela)) in.fail("light output ratio: too large");
   const double conversion = in.number("conversion factor", 0.0);
   if (!(conversion > 0.0)) in.fail("the conversion factor must be above 0");
   in.number("tilt during measurement");
@@ -212,6 +214,7 @@ Luminaire read_eulumdat(const std::filesystem::path& file) {
     const double lamps = in.number("number of lamps");
     (void)in.text("type of lamps");
     const double of_set = in.number("flux of lamps", 0.0);
+    if (!(of_set <= kMostCandela)) in.fail("flux of lamps: too large");
     in.skip("colour and colour rendering", 2);
     in.number("watts");
     if (i > 0) continue;
@@ -227,7 +230,10 @@ Luminaire read_eulumdat(const std::filesystem::path& file) {
   std::vector<double> candela;
   const int count = plane_count(h.symmetry, h.planes) * h.angles;
   const double scale = conversion * flux / 1000.0;  // the table is in cd per 1000 lm of lamps
-  for (int i = 0; i < count; ++i) candela.push_back(in.number("intensity", 0.0) * scale);
+  for (int i = 0; i < count; ++i) {
+    candela.push_back(in.number("intensity", 0.0) * scale);
+    if (!(candela.back() <= kMostCandela)) in.fail("intensity times flux and factors: too large");
+  }
   l.profile = unfold(h, c, std::move(gamma), candela);
   return l;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "luminaire_text.h"
@@ -69,7 +70,7 @@ class NumberStream {
     std::vector<double> values;
     for (int i = 0; i < count; ++i) {
       values.push_back(number(what));
-      if (i > 0 && !(values[values.size() - 1] > values[values.size() - 2])) {
+      if (i > 0 && !(values[values.size() - 1] >= values[values.size() - 2] + kLeastStep)) {
         fail(std::string(what) + " must increase");
       }
     }
@@ -111,21 +112,32 @@ double read_tilt_factor(NumberStream& in) {
 }
 
 struct Header {
-  std::string format = "LM-63-1986";  // which has no line of its own
+  int edition = 1986;  // which has no line of its own
   std::string name;
   std::string tilt;
   std::size_t data = 0;  // offset of what follows the TILT line
   int line = 1;          // of that offset
 };
 
-// "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019", or "[LUMINAIRE] text".
+// The year of "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019". Nothing: a free text, as the first
+// line of the first edition is.
+std::optional<int> edition_of(const std::string& line) {
+  constexpr std::string_view kShort = "IESNA", kStandard = "LM-63-";
+  const std::size_t standard = line.find(kStandard);
+  if (!line.starts_with("IES")) return std::nullopt;
+  const std::size_t begin =
+      standard != std::string::npos ? standard + kStandard.size() : kShort.size();
+  if (begin >= line.size()) return std::nullopt;
+  int year = 0;
+  const auto [next, code] = std::from_chars(line.data() + begin, line.data() + line.size(), year);
+  if (code != std::errc() || next != line.data() + line.size()) return std::nullopt;
+  if (year >= 0 && year < 100) year += year < 86 ? 2000 : 1900;
+  return year >= 1986 && year < 2100 ? std::optional(year) : std::nullopt;
+}
+
 void read_label(const std::string& line, Header& header) {
   constexpr std::string_view kName = "[LUMINAIRE]";
-  if (header.line == 1 && line.starts_with("IES")) {
-    const std::size_t standard = line.find("LM-63");
-    header.format = standard != std::string::npos ? line.substr(standard) : line;
-    if (line == "IESNA91") header.format = "LM-63-1991";
-  }
+  if (header.line == 1) header.edition = edition_of(line).value_or(header.edition);
   if (!line.starts_with(kName)) return;
   const std::size_t text = line.find_first_not_of(" \t", kName.size());
   if (text != std::string::npos) header.name = line.substr(text);
@@ -151,7 +163,8 @@ Header read_header(const std::string& name, const std::string& text) {
     ++header.line;
     return header;
   }
-  throw Error(name + ": no TILT= line, so this is no IES LM-63 file");
+  throw Error(name + ":" + std::to_string(header.line) +
+              ": no TILT= line, so this is no IES LM-63 file");
 }
 
 double tilt_factor(const Header& header, NumberStream& in, const std::filesystem::path& file) {
@@ -160,11 +173,13 @@ double tilt_factor(const Header& header, NumberStream& in, const std::filesystem
   if (keyword == "NONE") return 1.0;
   if (keyword == "INCLUDE") return read_tilt_factor(in);
   const std::filesystem::path name(header.tilt);
-  if (name.empty() || name != name.filename() || name == "..") {
-    throw Error(file.string() + ":" + std::to_string(header.line - 1) +
-                ": TILT must be NONE, INCLUDE or the name of a file beside this one");
-  }
+  const std::string place = file.string() + ":" + std::to_string(header.line - 1) + ": ";
+  if (name.empty() || name != name.filename() || name == "..")
+    throw Error(place + "TILT must be NONE, INCLUDE or the name of a file beside this one");
   const std::filesystem::path tilt_file = file.parent_path() / name;
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(tilt_file, unreadable))
+    throw Error(place + "there is no TILT file beside this one by that name");
   const std::string text = read_luminaire_text(tilt_file);
   NumberStream tilt(tilt_file.string(), text, 1);
   return read_tilt_factor(tilt);
@@ -180,10 +195,22 @@ struct Table {
   std::vector<double> candela;
 };
 
-Table read_table(NumberStream& in, double tilt) {
+// The number between ballast factor and watts. LM-63-1986 and 1991 call it the ballast-lamp
+// photometric factor, 1995 and 2002 reserve it ("future use") and demand 1, so that what deviates
+// there was meant as the older factor, as Radiance's ies2rad and Cycles read it, too. Since
+// LM-63-2019, 5.13, it is the file generation type: digits after "1." say whether the table was
+// measured, simulated, scaled. They scale nothing.
+double photometric_factor(NumberStream& in, int edition) {
+  if (edition < 2019) return in.factor("ballast-lamp photometric factor");
+  in.number("file generation type");
+  return 1.0;
+}
+
+Table read_table(NumberStream& in, double tilt, int edition) {
   Table table;
   const int lamps = in.integer("number of lamps", 0, 1000000);
   const double lumens = in.number("lumens per lamp");
+  if (!(lumens <= kMostCandela)) in.fail("lumens per lamp: too large");
   table.lamp_flux = lumens < 0.0 ? -1.0 : lamps * lumens;
   const double multiplier = in.factor("candela multiplier");
   const int vertical = in.integer("number of vertical angles", 2, kMaxAngles);
@@ -194,13 +221,14 @@ Table read_table(NumberStream& in, double tilt) {
   const std::pair<const char*, int> sizes[] = {{"width", 0}, {"length", 1}, {"height", 2}};
   for (const auto& [name, axis] : sizes) table.size[axis] = in.number(name) * metres;
   const double ballast = in.factor("ballast factor");
-  const double photometric = in.factor("ballast-lamp photometric factor");
+  const double photometric = photometric_factor(in, edition);
   in.number("input watts");
   const double scale = multiplier * ballast * photometric * tilt;
   table.vertical = in.increasing("vertical angle", vertical);
   table.horizontal = in.increasing("horizontal angle", horizontal);
   for (int i = 0; i < vertical * horizontal; ++i) {
     table.candela.push_back(in.factor("candela value") * scale);
+    if (!(table.candela.back() <= kMostCandela)) in.fail("candela value times factors: too large");
   }
   return table;
 }
@@ -322,9 +350,9 @@ Luminaire read_ies(const std::filesystem::path& file) {
   const Header header = read_header(file.string(), text);
   NumberStream in(file.string(), std::string_view(text).substr(header.data), header.line);
   const double tilt = tilt_factor(header, in, file);
-  const Table table = read_table(in, tilt);
+  const Table table = read_table(in, tilt, header.edition);
   Luminaire l;
-  l.format = header.format;
+  l.format = "LM-63-" + std::to_string(header.edition);
   l.name = header.name;
   l.type = table.type == 1 ? 'C' : table.type == 2 ? 'B' : 'A';
   l.symmetry = symmetry_of(table);

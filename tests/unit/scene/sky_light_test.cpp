@@ -397,7 +397,9 @@ TEST(Portals, SkyThroughAWindowMatchesTheIntegralOverIt) {
 
 // An opening that no portal was given for still counts in full.
 TEST(Portals, UnnamedOpeningsLoseNothing) {
-  const Scene scene = room(dome(cie_sky(16), 35.0), window_hint(), {.skylight = true});
+  PortalHints hints = window_hint();
+  hints.find = false;
+  const Scene scene = room(dome(cie_sky(16), 35.0), hints, {.skylight = true});
   for (const Vec3d& p : {Vec3d(1.0, 0, 2), Vec3d(3.5, 0, 1.5)}) {
     const RoomLight e = floor_light(scene, p, true, 200000);
     EXPECT_NEAR(e.with.mean, e.expected, 3.5 * e.with.error + 1e-4 * e.expected);
@@ -457,6 +459,127 @@ TEST(Portals, PanesAreFoundAutomatically) {
   s.quad(s.material(glass), {2, 0, 0}, {0, 3, 0}, {0, 0, 4});
   s.model().environment = uniform();
   EXPECT_TRUE(find_portals(RayQuery(s.build(), {"isa=avx2"})).empty());
+}
+
+/// Corners of the portals found, in world coordinates.
+Eigen::AlignedBox3d extent(const Scene& scene, const std::vector<Portal>& portals) {
+  Eigen::AlignedBox3d box;
+  for (const Portal& p : portals)
+    for (const Vec3f& c : p.corners) box.extend(c.cast<double>() + scene.origin);
+  return box;
+}
+
+// The window without a pane, in a wall of four pieces that share no edges: found to the
+// millimetre, turned inwards, and the light through it is the integral's.
+TEST(Portals, HolesInWallsAreFound) {
+  const Scene scene = room(dome(cie_sky(12), 35.0), {});
+  const RayQuery query(scene, {"isa=avx2"});
+  const std::vector<Opening> openings = find_openings(query);
+  ASSERT_EQ(openings.size(), 1u);
+  EXPECT_NEAR(openings[0].area, 2.4, 1e-3);
+  EXPECT_NEAR((openings[0].center - Vec3d(0, 1.6, 2)).norm(), 0.0, 1e-3);
+  EXPECT_NE(openings[0].reason.find("hole in a wall"), std::string::npos);
+  EXPECT_GT(openings[0].outside, 0.9);
+  EXPECT_LT(openings[0].inside, 0.1);
+  for (const Portal& p : openings[0].portals)
+    EXPECT_GT((p.corners[1] - p.corners[0]).cross(p.corners[2] - p.corners[0]).x(), 0.0f);
+  const RoomLight e = floor_light(scene, {2.5, 0, 2}, false, 50000);
+  EXPECT_NEAR(e.with.mean, e.expected, 3.5 * e.with.error + 1e-4 * e.expected);
+  EXPECT_GT(e.without.variance / e.with.variance, 20.0);
+  EXPECT_EQ(find_openings(RayQuery(room(dome(cie_sky(12), 35.0), {}, {.skylight = true}))).size(),
+            2u);
+}
+
+// Turned by 33 degrees about y, in a wall with two windows and a door that reaches the floor.
+TEST(Portals, HolesOfATurnedRoomAreFound) {
+  SceneMaker s;
+  const auto grey = s.diffuse(0.5);
+  const Eigen::AngleAxisd turn(33.0 * kRadians, Vec3d::UnitY());
+  const auto wall = [&](const Vec3d& a, const Vec3d& u, const Vec3d& v) {
+    s.quad(grey, turn * a, turn * u, turn * v);
+  };
+  wall({0, 0, 0}, {0, 0, 6}, {5, 0, 0});
+  wall({0, 3, 0}, {5, 0, 0}, {0, 0, 6});
+  wall({5, 0, 0}, {0, 0, 6}, {0, 3, 0});
+  wall({0, 0, 0}, {5, 0, 0}, {0, 3, 0});
+  wall({0, 0, 6}, {0, 3, 0}, {5, 0, 0});
+  const auto part = [&](double z0, double z1, double y0, double y1) {
+    wall({0, y0, z0}, {0, y1 - y0, 0}, {0, 0, z1 - z0});
+  };
+  for (const auto& [z0, z1] : {std::pair{0.0, 0.5}, {1.5, 2.0}, {3.5, 4.0}, {5.0, 6.0}})
+    part(z0, z1, 0.0, 3.0);
+  part(0.5, 1.5, 0.0, 1.0), part(0.5, 1.5, 2.2, 3.0);  // window
+  part(2.0, 3.5, 0.0, 1.0), part(2.0, 3.5, 2.2, 3.0);  // window
+  part(4.0, 5.0, 2.1, 3.0);                            // door
+  s.model().environment = uniform();
+  const std::vector<Opening> openings = find_openings(RayQuery(s.build(), {"isa=avx2"}));
+  ASSERT_EQ(openings.size(), 3u);  // largest first
+  EXPECT_NEAR(openings[0].area, 2.1, 2e-3);
+  EXPECT_NEAR(openings[1].area, 1.8, 2e-3);
+  EXPECT_NEAR(openings[2].area, 1.2, 2e-3);
+  EXPECT_NEAR((openings[0].center - turn * Vec3d(0, 1.05, 4.5)).norm(), 0.0, 2e-3);
+}
+
+TEST(Portals, MissingWallsAreFound) {
+  for (const int missing : {0, 1, 2}) {
+    SceneMaker s;
+    const auto grey = s.diffuse(0.5);
+    s.quad(grey, {0, 0, 0}, {0, 0, 4}, {5, 0, 0});
+    s.quad(grey, {0, 0, 0}, {5, 0, 0}, {0, 3, 0});
+    s.quad(grey, {5, 0, 0}, {0, 0, 4}, {0, 3, 0});
+    if (missing != 0) s.quad(grey, {0, 3, 0}, {5, 0, 0}, {0, 0, 4});
+    if (missing != 1) s.quad(grey, {0, 0, 0}, {0, 3, 0}, {0, 0, 4});
+    if (missing != 2) s.quad(grey, {0, 0, 4}, {0, 3, 0}, {5, 0, 0});
+    s.model().environment = uniform();
+    const Scene scene = s.build();
+    const std::vector<Opening> openings = find_openings(RayQuery(scene, {"isa=avx2"}));
+    ASSERT_EQ(openings.size(), 1u) << missing;
+    EXPECT_NE(openings[0].reason.find("missing wall"), std::string::npos);
+    const Vec3d normals[] = {{0, 20, 0}, {12, 0, 0}, {0, 0, 15}};
+    EXPECT_NEAR(openings[0].area, normals[missing].sum(), 1e-3);
+    const Vec3d size = extent(scene, find_portals(RayQuery(scene))).sizes();
+    EXPECT_NEAR(size.dot(normals[missing].normalized()), 0.0, 1e-4);
+  }
+}
+
+// What is no opening of a room: blocks under the open sky, a table, a gate, a fence with gaps.
+TEST(Portals, OutdoorsHasNone) {
+  SceneMaker s;
+  const auto grey = s.diffuse(0.5);
+  s.quad(grey, {-20, 0, -20}, {0, 0, 40}, {40, 0, 0});
+  s.box(grey, {-5, 0, -5}, {-1, 6, 5}, false);
+  s.box(grey, {2, 0, -5}, {6, 6, 5}, false);  // a street
+  for (int i = 0; i < 5; ++i)
+    s.box(grey, {-8.0 + 3.0 * i, 0, 10}, {-6.5 + 3.0 * i, 2, 10.1}, false);
+  s.box(grey, {-12, 0, 3}, {-11.5, 3, 3.5}, false);  // a gate
+  s.box(grey, {-12, 0, -3.5}, {-11.5, 3, -3}, false);
+  s.box(grey, {-12, 3, -3.5}, {-11.5, 3.3, 3.5}, false);
+  s.model().environment = uniform();
+  const Scene scene = s.build();
+  for (const Opening& o : find_openings(RayQuery(scene, {"isa=avx2"})))
+    ADD_FAILURE() << o.reason << " at " << o.center.transpose() << ", outside " << o.outside
+                  << ", inside " << o.inside;
+}
+
+// Portals that lie: beside the window, across it, far too small, in the open. Only the noise may
+// know.
+TEST(Portals, WrongPortalsGiveTheSameLight) {
+  const std::vector<std::vector<Vec3d>> wrong[] = {
+      {{{0, 2.3, 1}, {0, 2.9, 1}, {0, 2.9, 3}, {0, 2.3, 3}}},
+      {{{0.5, 0.5, 2.1}, {1.5, 2.5, 2.3}, {0.5, 2.5, 3.5}}},
+      {{{0, 1.5, 1.9}, {0, 1.6, 1.9}, {0, 1.6, 2.1}, {0, 1.5, 2.1}}},
+      {{{-3, 1, 1}, {-3, 2.2, 1}, {-3, 2.2, 3}, {-3, 1, 3}}}};
+  for (const auto& polygons : wrong) {
+    PortalHints hints;
+    hints.polygons = polygons;
+    hints.find = false;
+    const Scene scene = room(dome(cie_sky(12), 35.0), hints);
+    for (const Vec3d& p : {Vec3d(1.0, 0, 2), Vec3d(3.5, 0, 1.5)}) {
+      const RoomLight e = floor_light(scene, p, false, 300000);
+      EXPECT_NEAR(e.with.mean, e.expected, 3.5 * e.with.error);
+      EXPECT_LT(e.with.error, 0.05 * e.expected);
+    }
+  }
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ struct Environment {
 
 /// Openings through which rooms see the sky: hints that make its light less noisy, no more.
 struct PortalHints {
-  bool find = true;                          ///< take panes between inside and outside as openings
+  bool find = true;                          ///< take what find_openings() recognises, too
   std::vector<std::vector<Vec3d>> polygons;  ///< flat and convex, either side is the inside
   std::vector<std::string> objects;          ///< names of objects that cover an opening
 };

@@ -29,9 +29,12 @@ struct Luminaire {
 [[nodiscard]] bool is_luminaire_ending(const std::filesystem::path& file);
 
 // One reader per format; read_luminaire() chooses.
+/// The second number of the ballast line is a factor up to LM-63-2002; since 2019 it is the file
+/// generation type, which scales nothing.
 [[nodiscard]] Luminaire read_ies(const std::filesystem::path& file);
-/// Source: Stockmar 1990, Licht '90, pp. 641-644. Where several sets of lamps are given, the first
-/// one burns.
+/// Source: Stockmar 1990, Licht '90, pp. 641-644. Several sets of lamps are alternatives: the first
+/// one burns. A negative number of lamps: absolute photometry, the flux is the luminaire's. The
+/// tilt during measurement is that of the table itself and turns nothing.
 [[nodiscard]] Luminaire read_eulumdat(const std::filesystem::path& file);
 
 /// Angle [deg] around the brightest direction of the plane phi, phi + 180 within which the
