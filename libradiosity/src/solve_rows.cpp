@@ -831,6 +831,26 @@ class RowSolver {
     result_.error_reached = result_.error_estimate <= problem_.options.error;
   }
 
+  /// Irradiance of each side or the mean of its neighbours', whichever is less. By its own alone a
+  /// side that is too bright by chance would count little and stay so, while one too dark would be
+  /// drawn again: the mean would be too bright.
+  [[nodiscard]] SideValues<N> least_nearby() const {
+    SideValues<N> irradiance(problem_.side_count());
+    for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
+    SideValues<N> result = irradiance;
+    for (const SideIndex i : problem_.sides.active) {
+      Spectrum<N> sum;
+      float count = 0.0f;
+      neighbours_.visit(i, [&](SideIndex j) {
+        if (problem_.sides.is_active[j] == 0) return;
+        sum += irradiance[j];
+        count += 1.0f;
+      });
+      if (count > 0.0f && sum.mean() < count * irradiance[i].mean()) result[i] = sum / count;
+    }
+    return result;
+  }
+
   /// Says what the next round has to draw; false if nothing.
   bool plan_round() {
     constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
@@ -845,8 +865,9 @@ class RowSolver {
         {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours), 1.0},
         {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
          kShadowRayCost}};
+    const std::vector<double> weights = error_weights(problem_, least_nearby(), counting_share());
     auto plans =
-        plan_samples(problem_, weights_, exposed_, strata, kMargin * target / result_.error_estimate);
+        plan_samples(problem_, weights, exposed_, strata, kMargin * target / result_.error_estimate);
     if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
     refine_field();
     direct_goals_ = goals_of(plans[0], direct_);
