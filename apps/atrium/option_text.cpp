@@ -63,7 +63,8 @@ double parse_length(const char* option, const std::string& text) {
 
 std::pair<std::string, double> parse_factor(const std::string& text) {
   const std::size_t equals = text.rfind('=');
-  const auto n = equals == std::string::npos ? std::nullopt : numbers<1>(text.substr(equals + 1), ' ');
+  const auto n =
+      equals == std::string::npos ? std::nullopt : numbers<1>(text.substr(equals + 1), ' ');
   if (!n || equals == 0 || !((*n)[0] >= 0.0))
     throw Error("--set " + text + ": is not NAME=FACTOR with a factor of at least 0");
   return {text.substr(0, equals), (*n)[0]};

@@ -54,15 +54,15 @@ struct PictureView {
 struct SolveSettings {
   SolverChoice solver = SolverChoice::Rows;
   Quality quality = Quality::Normal;
-  double time_limit = 0.0;  ///< [s] for everything but writing; 0: none
+  double time_limit = 0.0;    ///< [s] for everything but writing; 0: none
   double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
   double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
   int probes = 0;              ///< points of the certificate
   bool paper_weights = false;  ///< --mode paper
   scene::Grouping light_groups = scene::Grouping::One;
-  bool keep_state = false;  ///< a solution is written, from which a later run may go on
-  bool keep_rows = false;   ///< with the rows
+  bool keep_state = false;         ///< a solution is written, from which a later run may go on
+  bool keep_rows = false;          ///< with the rows
   std::vector<PictureView> views;  ///< all that will use the solution; empty: anything may
 };
 
@@ -178,10 +178,10 @@ struct Finished {
   int code = 0;
 };
 
-using Command = std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, MeasureCommand,
-                             InfoCommand, CompareCommand,
-                             MaterialEvalCommand, MaterialDeriveCommand, MaterialListCommand,
-                             MaterialShowCommand, MaterialCompareCommand>;
+using Command =
+    std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, MeasureCommand,
+                 InfoCommand, CompareCommand, MaterialEvalCommand, MaterialDeriveCommand,
+                 MaterialListCommand, MaterialShowCommand, MaterialCompareCommand>;
 
 /// \throws Error  on wrong usage, one line.
 [[nodiscard]] Command parse_command_line(int argc, char** argv);

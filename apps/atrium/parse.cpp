@@ -429,10 +429,10 @@ struct Parser {
                    "them; they look along u x v")
         ->expected(4)
         ->type_name("X,Y,Z U V NxM");
-    CLI::Option* plane =
-        sub.add_option("--workplane", o.work_plane,
-                       "sensors that look up, at this height y [m] in rooms: a floor below, a ceiling above")
-            ->type_name("HEIGHT");
+    CLI::Option* plane = sub.add_option("--workplane", o.work_plane,
+                                        "sensors that look up, at this height y [m] in rooms: a "
+                                        "floor below, a ceiling above")
+                             ->type_name("HEIGHT");
     sub.add_option("--spacing", o.spacing, "of the sensors of a work plane [m]")
         ->check(CLI::Range(1e-6, 1e6))
         ->needs(plane)
@@ -507,10 +507,10 @@ Command finished_command(Parser& p, const std::string& command_line) {
   if (name == "solve") {
     finish(p.solve.scene, p.solve_texts);
     finish(p.solve.solve, p.solve_texts);
-    p.solve.solve.light_groups =
-        p.solve_texts.light_groups                      ? scene::Grouping::ByName
-        : p.solve.solve.solver == SolverChoice::Rows ? scene::Grouping::Declared
-                                                     : scene::Grouping::One;
+    p.solve.solve.light_groups = p.solve_texts.light_groups ? scene::Grouping::ByName
+                                 : p.solve.solve.solver == SolverChoice::Rows
+                                     ? scene::Grouping::Declared
+                                     : scene::Grouping::One;
     if (!p.solve.solution.empty() && p.solve.solve.solver != SolverChoice::Rows)
       throw Error("--solution: only --solver rows can go on from a solution");
     p.solve.common.command_line = command_line;

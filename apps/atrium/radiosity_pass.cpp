@@ -92,10 +92,10 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.escaped = r.flux.escaped;
   s.in_medium = r.flux.in_medium;
   s.flux_error = r.flux.standard_error;
-  s.memory = {{"scene", r.memory.scene},     {"bvh", r.memory.bvh},
+  s.memory = {{"scene", r.memory.scene},       {"bvh", r.memory.bvh},
               {"elements", r.memory.elements}, {"samples", r.memory.samples},
-              {"photons", r.memory.photons}, {"rows", r.memory.rows},
-              {"fields", r.memory.fields},   {"peak", r.memory.peak}};
+              {"photons", r.memory.photons},   {"rows", r.memory.rows},
+              {"fields", r.memory.fields},     {"peak", r.memory.peak}};
   s.counters = r.counters;
   return s;
 }
@@ -110,16 +110,14 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
   const radiosity::SolveOptions options = solve_options(settings, time_limit);
   const scene::Control control = session.control("radiosity");
   radiosity::SolveResult result =
-      previous == nullptr
-          ? radiosity::solve(*loaded.query, loaded.basis, options, control)
-          : radiosity::solve(*loaded.query, loaded.basis, options, control,
-                             radiosity::Previous{previous->field, previous->state});
+      previous == nullptr ? radiosity::solve(*loaded.query, loaded.basis, options, control)
+                          : radiosity::solve(*loaded.query, loaded.basis, options, control,
+                                             radiosity::Previous{previous->field, previous->state});
   RadiosityRun run;
   run.summary = summarise(result);
   run.summary.views = static_cast<int>(options.views.size());
   if (settings.error > 0.0) run.summary.error_target = settings.error;
-  for (const std::string& what : result.given_up)
-    session.progress.warning("memory limit: " + what);
+  for (const std::string& what : result.given_up) session.progress.warning("memory limit: " + what);
   if (settings.probes > 0) run.summary.certificate = summarise(result.certificate);
   if (want_mesh) {
     run.mesh =

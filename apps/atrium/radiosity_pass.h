@@ -14,8 +14,8 @@ namespace atrium::app {
 
 struct RadiosityRun {
   scene::SurfaceField field;
-  std::vector<scene::GroupField> groups;  ///< empty with one
-  std::vector<char> state;                ///< to go on from
+  std::vector<scene::GroupField> groups;   ///< empty with one
+  std::vector<char> state;                 ///< to go on from
   std::optional<scene::PolygonMesh> mesh;  ///< if asked for
   SolveSummary summary;
 };
@@ -26,11 +26,11 @@ struct RadiosityRun {
 /// Does light reach a diffuse surface at all? If not the reason is said in `why`.
 [[nodiscard]] bool radiosity_needed(const scene::Features& features, std::string& why);
 
-/// \param time_limit  [s] for this pass, 0: none. \param previous  to go on from.  \throws RuntimeFailure  if not available.
+/// \param time_limit  [s] for this pass, 0: none. \param previous  to go on from.  \throws
+/// RuntimeFailure  if not available.
 [[nodiscard]] RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                                          const SolveSettings& settings, double time_limit,
-                                         bool want_mesh,
-                                         const scene::Solution* previous = nullptr);
+                                         bool want_mesh, const scene::Solution* previous = nullptr);
 
 /// What the numbers of a solution mean; a solution serves only runs that say the same.
 [[nodiscard]] std::string describe_lanes(const LoadedScene& loaded, const SolveSettings& settings);

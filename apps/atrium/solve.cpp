@@ -51,15 +51,16 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   if (!c.solution.empty()) {
     previous = scene::read_solution(c.solution);
     if (previous->state.empty())
-      throw Error(c.solution + ": keeps nothing to go on from (stopped too early, or not by solve)");
+      throw Error(c.solution +
+                  ": keeps nothing to go on from (stopped too early, or not by solve)");
   }
   RadiosityRun run = run_radiosity(session, loaded, settings, c.solve.time_limit, want_mesh,
                                    previous ? &*previous : nullptr);
 
   if (c.solve.error > 0.0 && run.summary.stopped_by != "error")
     session.progress.warning("the error of " + std::to_string(100.0 * c.solve.error) +
-                          " % was not reached: stopped by " + run.summary.stopped_by + " at " +
-                          std::to_string(100.0 * run.summary.error_estimate) + " %");
+                             " % was not reached: stopped by " + run.summary.stopped_by + " at " +
+                             std::to_string(100.0 * run.summary.error_estimate) + " %");
   if (run.summary.certificate) session.progress.note(describe(*run.summary.certificate));
 
   session.clock.enter("write");

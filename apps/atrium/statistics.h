@@ -30,7 +30,7 @@ struct SolveSummary {
   std::size_t elements = 0;
   int iterations = 0;
   double residual = 0.0;
-  int views = 0;  ///< that the effort followed; 0: every surface matters
+  int views = 0;                       ///< that the effort followed; 0: every surface matters
   std::optional<double> error_target;  ///< that was asked for
   double error_estimate = 0.0;
   double mesh_error = 0.0;

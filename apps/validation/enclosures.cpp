@@ -299,9 +299,9 @@ Case reciprocity() {
 
 // The same room moved, turned, scaled, cut into other triangles.
 Case invariance() {
-  Case c =
-      enclosure("room with a table, moved, turned, scaled, cut up",
-                "the room as it was made (itself sampled); irradiance of exitance has no scale", 16);
+  Case c = enclosure(
+      "room with a table, moved, turned, scaled, cut up",
+      "the room as it was made (itself sampled); irradiance of exitance has no scale", 16);
   c.quantities = {{"scaled by 1e-3: mean E of the floor / reference", 1.0},
                   {"scaled by 1e3", 1.0},
                   {"moved by 1e4 m", 1.0},

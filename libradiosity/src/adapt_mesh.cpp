@@ -235,8 +235,8 @@ class MeshAdapter {
       fresh.push_back(i);
     }
     for (const auto& sides : {fresh, unknown})
-      sample_direct(*next, Purpose::Decide, DirectLights::All, {}, top_up(*next, tally, sides, kPilot), tally, work_,
-                    counters_);
+      sample_direct(*next, Purpose::Decide, DirectLights::All, {},
+                    top_up(*next, tally, sides, kPilot), tally, work_, counters_);
     old.layout.valid = before.known;
     const std::uint64_t old_elements = bytes_of(old) + problem_->bytes();
     const std::uint64_t old_samples = direct_.bytes();

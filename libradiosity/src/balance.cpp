@@ -56,8 +56,8 @@ template <int N>
 std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work, Counters& counters) {
   constexpr int kRays = 256;
   const std::size_t n = problem.sides.active.size();
-  const Rows<N> rows = trace_rows<N>(problem, {}, {}, std::vector<std::uint8_t>(n, 1), 0, kRays,
-                                     work, counters);
+  const Rows<N> rows =
+      trace_rows<N>(problem, {}, {}, std::vector<std::uint8_t>(n, 1), 0, kRays, work, counters);
   std::vector<Beyond> all(n);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double escaped = static_cast<double>(rows.escaped[k]);

@@ -77,8 +77,8 @@ std::uint64_t photons_that_fit(const MemoryBudget& memory, std::uint64_t wanted)
   // Every photon is deposited once or twice; a growing array has up to twice its size.
   constexpr std::uint64_t kEach = 4 * sizeof(Deposit<N>);
   constexpr std::uint64_t kFewest = 1024, kMost = 0xffffffffU;
-  return std::min({wanted, kMost,
-                   std::max(kFewest, memory.room(MemoryBudget::Part::Photons) / kEach)});
+  return std::min(
+      {wanted, kMost, std::max(kFewest, memory.room(MemoryBudget::Part::Photons) / kEach)});
 }
 
 template <int N>
@@ -138,9 +138,9 @@ Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& w
   return result;
 }
 
-#define ATRIUM_INSTANTIATE(N) \
-  template std::uint64_t photons_that_fit<N>(const MemoryBudget&, std::uint64_t);        \
-  template Photons<N> trace_photons(const Problem<N>&, Work&, Counters&);                \
+#define ATRIUM_INSTANTIATE(N)                                                     \
+  template std::uint64_t photons_that_fit<N>(const MemoryBudget&, std::uint64_t); \
+  template Photons<N> trace_photons(const Problem<N>&, Work&, Counters&);         \
   template Photons<N> trace_photons(const Problem<N>&, std::uint64_t, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -37,9 +37,8 @@ class SideLight {
     const Spectrum<N> visible = problem_.shading.visibility(p, *s, counters, Counter::RaysDirect);
     if ((visible * s->radiance).is_zero()) return true;
     const bool coupled = problem_.sides.coupled[i / 2] != 0;
-    const Spectrum<N> body = coupled
-                                 ? problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
-                                 : Spectrum<N>::one();
+    const Spectrum<N> body = coupled ? problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
+                                     : Spectrum<N>::one();
     const auto add = [&](std::uint32_t source, const Spectrum<N>& radiance) {
       const Spectrum<N> irradiance = visible * radiance * (cosine / s->pdf);
       if (!irradiance.is_zero())
@@ -67,12 +66,11 @@ bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights whic
                    Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
   const SideLight<N> light(problem, purpose, which);
-  return draw_one_by_one(plan, tally, work, counters,
-                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
-                          Counters& c) {
-                        return light.measure(i, replicate, index, sums, c,
-                                             !mixed.empty() && mixed[i] != 0);
-                      });
+  return draw_one_by_one(
+      plan, tally, work, counters,
+      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums, Counters& c) {
+        return light.measure(i, replicate, index, sums, c, !mixed.empty() && mixed[i] != 0);
+      });
 }
 
 template <int N>
@@ -97,11 +95,11 @@ Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights wh
   return estimate_of(tally, problem);
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                              \
-  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                             \
-                              const std::vector<std::uint8_t>&, const std::vector<Draw>&,  \
-                              Tally<N>&, Work&, Counters&);                                \
-  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                    \
+#define ATRIUM_INSTANTIATE(N)                                                             \
+  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                   \
+                              const std::vector<std::uint8_t>&, const std::vector<Draw>&, \
+                              Tally<N>&, Work&, Counters&);                               \
+  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                   \
   template Estimate<N> direct_light(const Problem<N>&, int, DirectLights, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -56,9 +56,9 @@ FluxBalance emission_balance(const Problem<N>& problem, const std::vector<Emitte
   return f;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                     \
-  template std::vector<Emitter<N>> find_emitters(const Problem<N>&);                              \
-  template FluxBalance emission_balance(const Problem<N>&, const std::vector<Emitter<N>>&,        \
+#define ATRIUM_INSTANTIATE(N)                                                              \
+  template std::vector<Emitter<N>> find_emitters(const Problem<N>&);                       \
+  template FluxBalance emission_balance(const Problem<N>&, const std::vector<Emitter<N>>&, \
                                         const Photons<N>&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -54,7 +54,7 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
   for (const SideIndex i : active)
     for (std::size_t g = group.value_or(0); g < (group ? *group + 1 : tally.groups()); ++g)
       value[i] += static_cast<double>(tally.mean(i, g).mean());
-  std::vector<double> scale(problem.side_count(), 0.0);     // squared
+  std::vector<double> scale(problem.side_count(), 0.0);  // squared
   std::vector<double> own(problem.side_count(), 0.0);
   double all = 0.0;
   double all_scale = 0.0;
@@ -118,23 +118,24 @@ std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
       // Less than a tenth more is not worth it.
       if (!(wanted > 1.1 * have)) continue;
       // Even numbers in each replicate; see HotPatches::kSamplesPerRay.
-      const auto more = static_cast<std::uint32_t>(
-          std::ceil((wanted - have) / (2.0 * kReplicates * static_cast<double>(exposed[i])))) * 2;
+      const auto more =
+          static_cast<std::uint32_t>(
+              std::ceil((wanted - have) / (2.0 * kReplicates * static_cast<double>(exposed[i])))) *
+          2;
       plans[c].push_back({i, more});
     }
   }
   return plans;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                    \
-  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&,             \
-                                             const std::vector<float>&);                         \
-  template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,             \
-                                               const Tally<N>&, Samples, GroupChoice);           \
-  template std::vector<std::vector<Draw>> plan_samples(const Problem<N>&,                        \
-                                                       const std::vector<double>&,               \
-                                                       const std::vector<float>&,                \
-                                                       const std::vector<Stratum<N>>&, double);
+#define ATRIUM_INSTANTIATE(N)                                                          \
+  template std::vector<double> error_weights(const Problem<N>&, const SideValues<N>&,  \
+                                             const std::vector<float>&);               \
+  template std::vector<double> sample_variance(const Problem<N>&, const Neighbours&,   \
+                                               const Tally<N>&, Samples, GroupChoice); \
+  template std::vector<std::vector<Draw>> plan_samples(                                \
+      const Problem<N>&, const std::vector<double>&, const std::vector<float>&,        \
+      const std::vector<Stratum<N>>&, double);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

@@ -17,10 +17,10 @@ template <int N>
                                                 const SideValues<N>& irradiance,
                                                 const std::vector<float>& share = {});
 
-/// Variance of one sample of each side (lane mean, of all groups or one), pooled as relative variance: of the
-/// neighbours' samples for a decision about a side, which must not depend on the samples that it
-/// stops; of its own and the neighbours' samples for the report, which four replicates alone would
-/// make unsteady.
+/// Variance of one sample of each side (lane mean, of all groups or one), pooled as relative
+/// variance: of the neighbours' samples for a decision about a side, which must not depend on the
+/// samples that it stops; of its own and the neighbours' samples for the report, which four
+/// replicates alone would make unsteady.
 enum class Samples { Neighbours, All };
 using GroupChoice = std::optional<std::size_t>;
 inline constexpr GroupChoice kAllGroups = std::nullopt;

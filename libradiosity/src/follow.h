@@ -9,8 +9,8 @@ namespace atrium::radiosity {
 /// What a path does besides reaching diffuse surfaces.
 template <int N>
 struct PathEnd {
-  Spectrum<N> escaped;        ///< weight that left the scene
-  Spectrum<N> in_medium;      ///< weight that the air took
+  Spectrum<N> escaped;              ///< weight that left the scene
+  Spectrum<N> in_medium;            ///< weight that the air took
   Vec3f direction = Vec3f::Zero();  ///< ... in this direction
   bool specular = false;            ///< the path met more than straight passages through panes
   bool inside_solid = false;  ///< the first surface was the inner face of an unlit closed body
@@ -127,12 +127,12 @@ struct IgnoreSurface {
 /// \param hit  the first surface on the ray.
 /// \param problem  Problem, or what else has `shading`, `sides.plain`, `sides.inner` and
 /// `side_at`.
-/// \param on_surface  (interaction, weight, specular) at every surface that is not plain, before its
-/// part in light.
+/// \param on_surface  (interaction, weight, specular) at every surface that is not plain, before
+/// its part in light.
 template <int N, class World, class OnDiffuse, class OnSurface = IgnoreSurface>
-PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit,
-                       Spectrum<N> weight, scene::Sampler& sampler, material::Transport transport,
-                       scene::Counter kind, scene::Counters& counters, OnDiffuse&& on_diffuse,
+PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit, Spectrum<N> weight,
+                       scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
+                       scene::Counters& counters, OnDiffuse&& on_diffuse,
                        OnSurface&& on_surface = {}) {
   constexpr int kMaxDepth = 256;  // only total reflection without loss gets near
   const scene::Shading<N>& shading = problem.shading;

@@ -93,8 +93,8 @@ template <int N>
 [[nodiscard]] bool is_buried(const Problem<N>& problem, const scene::SurfacePoint& p,
                              const Vec3f& normal, const Vec2f& u, scene::Counters& counters) {
   const Vec3f w = Frame(normal).to_world(sample_cosine_hemisphere(u)).normalized();
-  const auto hit = problem.shading.closest({scene::offset_origin(p, w), w}, counters,
-                                           scene::Counter::RaysProbe);
+  const auto hit =
+      problem.shading.closest({scene::offset_origin(p, w), w}, counters, scene::Counter::RaysProbe);
   return hit && inside_solid(problem.sides, hit->object, hit->ng.dot(w) <= 0.0f);
 }
 

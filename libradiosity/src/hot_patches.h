@@ -35,7 +35,8 @@ class HotPatches {
 
   [[nodiscard]] bool is_for(std::size_t sides, std::size_t groups) const {
     if (sides_.empty()) return true;
-    bool ok = until_.size() == sides_.size() && density_.size() == sides && source_.size() == groups;
+    bool ok =
+        until_.size() == sides_.size() && density_.size() == sides && source_.size() == groups;
     for (const SideIndex i : sides_) ok = ok && i < sides;
     for (const SideValues<N>& s : source_) ok = ok && s.size() == sides;
     return ok;

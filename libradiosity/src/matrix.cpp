@@ -136,8 +136,8 @@ class MatrixSolver {
     constexpr double kFewest = 16.0;
     constexpr double kInAir = 64.0;
     const double pairs = static_cast<double>(size_ * size_) * 0.5 + 1.0;
-    const int rays = static_cast<int>(
-        blocked ? std::clamp(kVisibilityRays / pairs, kFewest, 65536.0) : kInAir);
+    const int rays =
+        static_cast<int>(blocked ? std::clamp(kVisibilityRays / pairs, kFewest, 65536.0) : kInAir);
     const LaneValues<N> share = visible_share(
         problem_, a, b, {problem_.options.seed + i, static_cast<std::uint32_t>(j), rays}, counters);
     for (std::size_t lane = 0; lane < N; ++lane) result[lane] *= share[lane];

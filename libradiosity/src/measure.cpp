@@ -34,7 +34,7 @@ struct World {
     std::vector<std::uint8_t> inner;
     std::vector<std::uint8_t> plain;  // none: textured points of the field have to be shaded
   } sides;                            // as follow() wants it
-  std::vector<float> total, body;  // of the field, all light
+  std::vector<float> total, body;     // of the field, all light
   Lanes<N> y_weights;
   double mean_y = 0.0;    // irradiance of the field's surfaces, by area
   bool specular = false;  // may light arrive through mirrors, solids, lobes?
@@ -221,17 +221,16 @@ class SensorRun {
     light.distance = static_cast<float>(s.distance);
     const float rounding =
         28.0f * 0x1p-24f * static_cast<float>(q.cwiseAbs().maxCoeff()) + 0x1p-20f * light.distance;
-    light.end = scene::offset_origin(
-        q.template cast<float>(), rounding,
-        (ng.dot(s.direction) > 0.0 ? Vec3d(-ng) : ng).template cast<float>());
+    light.end =
+        scene::offset_origin(q.template cast<float>(), rounding,
+                             (ng.dot(s.direction) > 0.0 ? Vec3d(-ng) : ng).template cast<float>());
     return visibility(light);
   }
   /// Irradiance by a light sample, pdf included.
   [[nodiscard]] Lanes<N> arriving(const scene::LightSample<N>& s) const {
     const double cosine = s.wi.template cast<double>().dot(place_.normal);
     if (!(cosine > 0.0) || !(s.pdf > 0.0f) || s.radiance.is_zero()) return Lanes<N>::Zero();
-    return to_lanes<N>(visibility(s) * s.radiance) *
-           (cosine / static_cast<double>(s.pdf));
+    return to_lanes<N>(visibility(s) * s.radiance) * (cosine / static_cast<double>(s.pdf));
   }
   [[nodiscard]] Lanes<N> dirac_light() const {
     Lanes<N> sum = Lanes<N>::Zero();
@@ -247,7 +246,8 @@ class SensorRun {
     for (const auto& polygon : world_.polygons.polygons()) add_polygon(polygon, world_.y(all));
     const scene::LightSampler<N>& lights = world_.shading.lights();
     const Vec3f normal = place_.normal.template cast<float>();
-    if (lights.sample_sky(place_.position.template cast<float>(), normal, Vec2f(0.5f, 0.5f))) add_sky(normal);
+    if (lights.sample_sky(place_.position.template cast<float>(), normal, Vec2f(0.5f, 0.5f)))
+      add_sky(normal);
     if (!world_.polygons.covers_all() || !world_.loop_dirac) add_chosen_lights(normal);
     if (!world_.total.empty() || (world_.specular && !reads_caustics())) add_gathering(normal);
   }
@@ -279,14 +279,17 @@ class SensorRun {
     Part<N> part;
     for (std::uint32_t k = 0; k < 16; ++k) {  // of the open sky, for the prior
       scene::Sampler random(world_.options.seed ^ 0x5c7U, 0, k);
-      const auto s = lights.sample_sky(place_.position.template cast<float>(), normal, random.next_2d());
+      const auto s =
+          lights.sample_sky(place_.position.template cast<float>(), normal, random.next_2d());
       const float cosine = s ? s->wi.dot(normal) : 0.0f;
       if (cosine > 0.0f)
         part.largest += world_.y(s->radiance) * static_cast<double>(cosine / s->pdf) / 16.0;
     }
     part.draw = [this, normal, &lights](scene::Sampler& random, Counters&) {
       Draw<N> d{.f = 1.0};
-      if (const auto s = lights.sample_sky(place_.position.template cast<float>(), normal, random.next_2d())) d.value = arriving(*s);
+      if (const auto s =
+              lights.sample_sky(place_.position.template cast<float>(), normal, random.next_2d()))
+        d.value = arriving(*s);
       return d;
     };
     parts_.push_back(std::move(part));
@@ -421,9 +424,9 @@ class SensorRun {
     const double target = world_.options.error * std::max(y, 0.01 * world_.mean_y);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       // A pilot that saw nothing says nothing of how much there is.
-      double samples = target > 0.0  ? spread[i] * sum / (target * target)
-                       : sum > 0.0 ? world_.options.max_rays
-                                   : 0.0;
+      double samples = target > 0.0 ? spread[i] * sum / (target * target)
+                       : sum > 0.0  ? world_.options.max_rays
+                                    : 0.0;
       samples = std::clamp(samples, static_cast<double>(parts_[i].pilot),
                            std::max<double>(parts_[i].pilot, world_.options.max_rays));
       parts_[i].samples = in_groups(samples);

@@ -32,8 +32,7 @@ class MemoryBudget {
   /// A part holds so much now. What it held before is replaced.
   void hold(Part part, std::uint64_t bytes) {
     held_[static_cast<std::size_t>(part)] = bytes;
-    most_[static_cast<std::size_t>(part)] =
-        std::max(most_[static_cast<std::size_t>(part)], bytes);
+    most_[static_cast<std::size_t>(part)] = std::max(most_[static_cast<std::size_t>(part)], bytes);
     peak_ = std::max(peak_, held());
   }
   [[nodiscard]] std::uint64_t held() const {
@@ -55,8 +54,8 @@ class MemoryBudget {
 
   [[nodiscard]] MemoryUse use() const {
     const auto most = [&](Part p) { return most_[static_cast<std::size_t>(p)]; };
-    return {most(Part::Scene), most(Part::Bvh),  most(Part::Elements), most(Part::Samples),
-            most(Part::Photons), most(Part::Rows), most(Part::Fields), peak_};
+    return {most(Part::Scene),   most(Part::Bvh),  most(Part::Elements), most(Part::Samples),
+            most(Part::Photons), most(Part::Rows), most(Part::Fields),   peak_};
   }
 
  private:

@@ -15,7 +15,8 @@ template <int N>
 struct Estimate {
   Irradiance<N> irradiance;
   std::vector<float> variance;
-  explicit Estimate(std::size_t sides = 0, bool body = false) : irradiance(sides, body), variance(sides, 0.0f) {}
+  explicit Estimate(std::size_t sides = 0, bool body = false)
+      : irradiance(sides, body), variance(sides, 0.0f) {}
 };
 
 template <int N>

@@ -44,8 +44,8 @@ ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements
       for (std::size_t c = 1; c + 1 < piece.corners.size(); ++c) {
         const Vec3f edge1 = piece.corners[c] - piece.corners[0];
         const Vec3f edge2 = piece.corners[c + 1] - piece.corners[0];
-        fans_.push_back({corner, (1.0f - shrink) * edge1, (1.0f - shrink) * edge2, point.ng,
-                         point.error, p});
+        fans_.push_back(
+            {corner, (1.0f - shrink) * edge1, (1.0f - shrink) * edge2, point.ng, point.error, p});
         sum += 0.5 * edge1.cast<double>().cross(edge2.cast<double>()).norm();
         area_until_.push_back(static_cast<float>(sum));
       }

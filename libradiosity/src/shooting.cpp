@@ -133,8 +133,8 @@ class ShootingSolver {
   /// free. Where nothing stands between, nothing is sampled: the factors of a convex room sum to 1.
   LaneValues<N> exchange_area(SideIndex j, const Patch& receiver, const Patch& shooter, int rays,
                               Counters& counters) const {
-    LaneValues<N> share =
-        visible_share(problem_, receiver, shooter, {problem_.options.seed + shooters_, j, rays}, counters);
+    LaneValues<N> share = visible_share(problem_, receiver, shooter,
+                                        {problem_.options.seed + shooters_, j, rays}, counters);
     if (share == LaneValues<N>{}) return share;
     const double free = unoccluded_exchange_area(receiver, shooter, false);
     for (double& s : share) s *= free;
@@ -172,7 +172,8 @@ class ShootingSolver {
       const SideIndex i = problem_.sides.active[k];
       const double area = static_cast<double>(problem_.area(i));
       f.escaped += beyond_[i] * beyond[k].escaped;
-      f.absorbed += beyond_[i] * beyond[k].absorbed + area * absorbed_per_area(problem_, result_, i);
+      f.absorbed +=
+          beyond_[i] * beyond[k].absorbed + area * absorbed_per_area(problem_, result_, i);
       f.in_medium += beyond_[i] * beyond[k].in_medium;
       variance += area * area * static_cast<double>(result_.direct.variance[i]);
     }
@@ -180,8 +181,8 @@ class ShootingSolver {
   }
 
   static constexpr int kRays = 4;  ///< of a pair
-  /// What the air lets pass is a ratio of sums: of few rays it would be biased between near patches,
-  /// where short ways count most.
+  /// What the air lets pass is a ratio of sums: of few rays it would be biased between near
+  /// patches, where short ways count most.
   static constexpr int kRaysInAir = 16;
 
   const Problem<N>& problem_;
@@ -192,7 +193,7 @@ class ShootingSolver {
   SideValues<N> unshot_;              ///< radiosity that has not been sent
   SideValues<N> received_;            ///< irradiance per exitance of the current shooter
   std::vector<double> beyond_;        ///< by side: flux, lane mean, that no side received
-  int rays_;  ///< of a pair
+  int rays_;                          ///< of a pair
   std::size_t shots_ = 0;
   std::size_t shooters_ = 0;  ///< emitters included
 };

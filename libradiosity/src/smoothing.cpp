@@ -38,9 +38,8 @@ SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
   std::size_t at = 0;
   for (const SideIndex i : problem_->sides.active) {
     result[i] = values[i];
-    neighbours_->visit(i, [&](SideIndex j) {
-      result[i] += weight_[at++] * (values[j] - values[i]);
-    });
+    neighbours_->visit(i,
+                       [&](SideIndex j) { result[i] += weight_[at++] * (values[j] - values[i]); });
   }
   return result;
 }

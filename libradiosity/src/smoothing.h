@@ -37,6 +37,7 @@ class Smoothing {
 
   [[nodiscard]] SideValues<N> operator()(const SideValues<N>& values) const;
   [[nodiscard]] const std::vector<float>& weights() const { return weight_; }
+
  private:
   const Problem<N>* problem_;
   const Neighbours* neighbours_;

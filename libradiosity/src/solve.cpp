@@ -207,14 +207,13 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   MemoryBudget& memory = work.memory();
   memory.hold(MemoryBudget::Part::Scene, bytes_of(query.scene()));
   memory.hold(MemoryBudget::Part::Bvh, query.memory_bytes());
-  SideShape shape{.lanes = N,
-                  .groups = scene::find_light_groups(query.scene(), options.light_groups).size(),
-                  .body = std::any_of(query.scene().materials.begin(), query.scene().materials.end(),
-                                      [](const material::Material& m) {
-                                        return material::traits(m).coupled;
-                                      }),
-                  .solver = options.solver,
-                  .keep = options.keep};
+  SideShape shape{
+      .lanes = N,
+      .groups = scene::find_light_groups(query.scene(), options.light_groups).size(),
+      .body = std::any_of(query.scene().materials.begin(), query.scene().materials.end(),
+                          [](const material::Material& m) { return material::traits(m).coupled; }),
+      .solver = options.solver,
+      .keep = options.keep};
   options = within_memory(options, query.scene(), shape, previous, memory);
   const Surroundings surroundings(shading.scene());
   AdaptedMesh mesh = make_mesh(shading, surroundings, options, previous, work, result.counters);
@@ -251,7 +250,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
                                           work, result.counters);
   result.complete = work.stopped_by().empty();
   result.stopped_by = !result.complete                ? work.stopped_by()
-                      : !memory.given_up().empty()     ? "memory limit"
+                      : !memory.given_up().empty()    ? "memory limit"
                       : !solution.iteration.converged ? "iterations"
                       : options.error == 0.0          ? "tolerance"
                       : solution.error_reached        ? "error"

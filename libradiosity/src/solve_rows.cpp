@@ -20,8 +20,8 @@ struct GroupLight {
   SideValues<N> bounced;        ///< exchange irradiance of the rows' solution, later a better one
   bool refined = false;         ///< is it better?
   SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
-  SideValues<N> seen;           ///< bounced, smoothed: what fresh rays read beside the source
-  SideValues<N> read;           ///< what the fresh rays so far have read, or as if they had
+  SideValues<N> seen;  ///< bounced, smoothed: what fresh rays read beside the source
+  SideValues<N> read;  ///< what the fresh rays so far have read, or as if they had
   std::optional<Smoothing<N>> smoothing;  ///< that made `seen`
 };
 
@@ -47,8 +47,9 @@ std::vector<Draw> missing(const std::vector<Goal>& goals, const Tally<N>& tally)
 /// What is being done. A stage that was interrupted is taken up again from what was drawn.
 enum class Stage : std::uint8_t { Light, Rows, FirstGather, Gather, RoundLight, RoundGather };
 
-/// Solves by rows, in stages. An interrupt leaves the state in which a later solver gets to the same
-/// bits: every decision depends on samples that were complete when it was made, or is remembered.
+/// Solves by rows, in stages. An interrupt leaves the state in which a later solver gets to the
+/// same bits: every decision depends on samples that were complete when it was made, or is
+/// remembered.
 template <int N>
 class RowSolver {
  public:
@@ -103,8 +104,7 @@ class RowSolver {
     if (stage_ == Stage::Light) {
       work_.begin("direct light", 0.15);
       draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
-      work_.begin(problem_.specular ? "caustics" : "flux balance",
-                  problem_.specular ? 0.3 : 0.17);
+      work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
       photons_ = trace_photons(problem_, work_, counters_);
       (void)paused(Stage::Light);
     }
@@ -137,7 +137,8 @@ class RowSolver {
     draw_direct(top_up(problem_, direct_, sides, samples));
   }
   void draw_direct(const std::vector<Draw>& plan) {
-    sample_direct(problem_, Purpose::Count, DirectLights::All, mixed_, plan, direct_, work_, counters_);
+    sample_direct(problem_, Purpose::Count, DirectLights::All, mixed_, plan, direct_, work_,
+                  counters_);
   }
   void draw_hot(const std::vector<Draw>& plan) {
     sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
@@ -249,7 +250,8 @@ class RowSolver {
       a(*v);
     a(photons_.count);
     for (GroupLight<N>& g : groups_) {
-      for (auto* v : {&g.source, &g.bounced, &g.seen, &g.read, &g.solved_source, &g.solved_shot}) a(*v);
+      for (auto* v : {&g.source, &g.bounced, &g.seen, &g.read, &g.solved_source, &g.solved_shot})
+        a(*v);
       a(g.refined);
       std::vector<float> weights;
       if (g.smoothing) weights = g.smoothing->weights();
@@ -293,8 +295,7 @@ class RowSolver {
   [[nodiscard]] bool consistent() const {
     const std::size_t n = problem_.side_count();
     const bool body = problem_.sides.any_coupled;
-    bool ok = stage_ <= Stage::RoundGather &&
-              direct_.is_for(n, groups_.size(), body) &&
+    bool ok = stage_ <= Stage::RoundGather && direct_.is_for(n, groups_.size(), body) &&
               shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
               exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n;
     const auto in_range = [n](SideIndex i) { return i < n; };
@@ -586,8 +587,7 @@ class RowSolver {
     const SideValues<N> source = hot_.without_hot(g.source);
     SideValues<N> b(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
-      b[i] =
-          leaving(problem_.sides, i, source[i] + g.seen[i], source[i ^ 1U] + g.seen[i ^ 1U]);
+      b[i] = leaving(problem_.sides, i, source[i] + g.seen[i], source[i ^ 1U] + g.seen[i ^ 1U]);
     return b;
   }
 
@@ -654,10 +654,9 @@ class RowSolver {
     const float share =
         rows_.rays[k] > 0 ? (1.0f - fresh) / static_cast<float>(rows_.rays[k]) : 0.0f;
     const auto estimate = [&](bool body) {
-      const Spectrum<N> gathered =
-          body ? gathered_.mean_body(i, group) : gathered_.mean(i, group);
-      return share * (rows_.apply(k, b, body) + rows_.hot_sum(k, group, body)) +
-             fresh * gathered + shot_light(i, group, body);
+      const Spectrum<N> gathered = body ? gathered_.mean_body(i, group) : gathered_.mean(i, group);
+      return share * (rows_.apply(k, b, body) + rows_.hot_sum(k, group, body)) + fresh * gathered +
+             shot_light(i, group, body);
     };
     g.indirect.plain[i] = estimate(false);
     if (problem_.sides.coupled[i / 2] != 0) g.indirect.body[i] = estimate(true);
@@ -669,8 +668,7 @@ class RowSolver {
       for (std::size_t g = 1; g < groups_.size(); ++g)
         for (const SideIndex i : problem_.sides.active) {
           into.irradiance.plain[i] += (groups_[g].*part).plain[i];
-          if (problem_.sides.any_coupled)
-            into.irradiance.body[i] += (groups_[g].*part).body[i];
+          if (problem_.sides.any_coupled) into.irradiance.body[i] += (groups_[g].*part).body[i];
         }
     };
     sum(&GroupLight<N>::direct, result_.direct);
@@ -743,9 +741,9 @@ class RowSolver {
     SideValues<N> irradiance(problem_.side_count());
     for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
     weights_ = error_weights(problem_, irradiance, counting_share());
-    result_.error_estimate = std::sqrt(weighted(result_.direct.variance) +
-                                       weighted(result_.caustic.variance) +
-                                       weighted(result_.indirect.variance));
+    result_.error_estimate =
+        std::sqrt(weighted(result_.direct.variance) + weighted(result_.caustic.variance) +
+                  weighted(result_.indirect.variance));
   }
 
   /// Share of a side's area that counts: what lies outside closed bodies, by importance.
@@ -804,9 +802,10 @@ class RowSolver {
     for (std::uint64_t e = rows_.first[k]; e < rows_.first[k + 1]; ++e) {
       const auto& entry = rows_.entries[e];
       const SideIndex j = entry.target & ~Rows<N>::kChromatic;
-      const double value = static_cast<double>(leaving(problem_.sides, j, g.source[j] + g.bounced[j],
-                                                       g.source[j ^ 1U] + g.bounced[j ^ 1U])
-                                                   .mean());
+      const double value =
+          static_cast<double>(leaving(problem_.sides, j, g.source[j] + g.bounced[j],
+                                      g.source[j ^ 1U] + g.bounced[j ^ 1U])
+                                  .mean());
       sum += static_cast<double>(entry.weight) * value;
       squares += static_cast<double>(entry.weight) * value * value;
     }
@@ -866,8 +865,8 @@ class RowSolver {
         {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
          kShadowRayCost}};
     const std::vector<double> weights = error_weights(problem_, least_nearby(), counting_share());
-    auto plans =
-        plan_samples(problem_, weights, exposed_, strata, kMargin * target / result_.error_estimate);
+    auto plans = plan_samples(problem_, weights, exposed_, strata,
+                              kMargin * target / result_.error_estimate);
     if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
     refine_field();
     direct_goals_ = goals_of(plans[0], direct_);
@@ -925,10 +924,10 @@ class RowSolver {
   Photons<N> photons_;
   Rows<N> rows_;
   HotPatches<N> hot_;
-  std::vector<float> exposed_;   ///< by side: share of its area outside closed bodies
+  std::vector<float> exposed_;       ///< by side: share of its area outside closed bodies
   std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
   std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
-  std::vector<double> weights_;  ///< of squared errors, by side
+  std::vector<double> weights_;      ///< of squared errors, by side
   std::vector<Variances> group_variances_;
 
   Stage stage_ = Stage::Light;
@@ -936,8 +935,8 @@ class RowSolver {
   std::vector<Goal> direct_goals_, shot_goals_, gather_goals_;
   bool hot_chosen_ = false, hot_light_known_ = false;
   std::vector<float> hot_reflectance_;  ///< that the solver before this one knew
-  std::vector<std::uint32_t> traced_;  ///< rays of each row of the solver before this one
-  bool caught_up_ = true;              ///< false: stopped before those were traced again
+  std::vector<std::uint32_t> traced_;   ///< rays of each row of the solver before this one
+  bool caught_up_ = true;               ///< false: stopped before those were traced again
   std::vector<char> state_;
   int iterations_before_assembly_ = 0;
   Iteration restored_iteration_;

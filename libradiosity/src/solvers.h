@@ -10,7 +10,7 @@ namespace atrium::radiosity {
 template <int N>
 struct GroupEstimate {
   Irradiance<N> direct, caustic, indirect;
-  std::vector<float> light_variance;     ///< of direct and caustic
+  std::vector<float> light_variance;  ///< of direct and caustic
   std::vector<float> indirect_variance;
 };
 
@@ -19,8 +19,8 @@ template <int N>
 struct Solution {
   Estimate<N> direct, caustic, indirect;
   std::vector<GroupEstimate<N>> groups;  ///< whose sum the estimates are; empty with one group
-  std::vector<char> state;  ///< to go on from, if SolveOptions::keep says so
-  std::vector<std::uint8_t> valid;  ///< by side
+  std::vector<char> state;               ///< to go on from, if SolveOptions::keep says so
+  std::vector<std::uint8_t> valid;       ///< by side
   FluxBalance flux;
   Iteration iteration;
   double error_estimate = 0.0;

@@ -189,18 +189,18 @@ struct Draw {
 template <int N, class Samples>
 bool draw_samples(const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
                   scene::Counters& counters, Samples&& draw) {
-  return work.run(
-      plan.size(), 32, counters, [&](std::size_t begin, std::size_t end, scene::Counters& c) {
-        SideSums<N> sums(tally.groups());
-        for (std::size_t k = begin; k < end; ++k) {
-          const auto [side, more] = plan[k];
-          sums.clear();
-          for (int r = 0; r < kReplicates; ++r)
-            sums.valid[static_cast<std::size_t>(r)] +=
-                draw(side, r, tally.drawn(side), more, sums, c);
-          tally.add(side, sums, more);
-        }
-      });
+  return work.run(plan.size(), 32, counters,
+                  [&](std::size_t begin, std::size_t end, scene::Counters& c) {
+                    SideSums<N> sums(tally.groups());
+                    for (std::size_t k = begin; k < end; ++k) {
+                      const auto [side, more] = plan[k];
+                      sums.clear();
+                      for (int r = 0; r < kReplicates; ++r)
+                        sums.valid[static_cast<std::size_t>(r)] +=
+                            draw(side, r, tally.drawn(side), more, sums, c);
+                      tally.add(side, sums, more);
+                    }
+                  });
 }
 /// The same with one(side, replicate, index, sums, counters) adding a single sample; it returns
 /// whether the point was valid.
@@ -232,8 +232,8 @@ template <int N>
                              SideIndex i, int samples) {
   const int wanted = samples_at_level(samples, problem.level(i));
   if (importance.empty() || importance[i] == 1.0f) return wanted;
-  return std::min(wanted,
-                  std::max(8, static_cast<int>(static_cast<float>(wanted) * std::sqrt(importance[i]))));
+  return std::min(
+      wanted, std::max(8, static_cast<int>(static_cast<float>(wanted) * std::sqrt(importance[i]))));
 }
 
 /// What is missing to `samples` of every side, in fours; see samples_of().

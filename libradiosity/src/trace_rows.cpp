@@ -246,8 +246,8 @@ Rows<N> trace_rows(const Problem<N>& problem, const HotPatches<N>& hot, Rows<N> 
   return rows;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                    \
-  template Rows<N> trace_rows(const Problem<N>&, const HotPatches<N>&, Rows<N>,                  \
+#define ATRIUM_INSTANTIATE(N)                                                   \
+  template Rows<N> trace_rows(const Problem<N>&, const HotPatches<N>&, Rows<N>, \
                               const std::vector<std::uint8_t>&, int, int, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -85,7 +85,7 @@ std::vector<float> view_importance(const Problem<N>& problem, const Rows<N>& row
   return importance;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                             \
+#define ATRIUM_INSTANTIATE(N) \
   template std::vector<float> view_importance(const Problem<N>&, const Rows<N>&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -21,8 +21,8 @@ LaneValues<N> visible_share(const Problem<N>& problem, const Patch& a, const Pat
     const double r2 = static_cast<double>(d.squaredNorm());
     const double kernel = static_cast<double>(here) * static_cast<double>(there) / (r2 * r2);
     all += kernel;
-    const Spectrum<N> t = problem.shading.transmittance(segment(p, q), counters,
-                                                        scene::Counter::RaysRow);
+    const Spectrum<N> t =
+        problem.shading.transmittance(segment(p, q), counters, scene::Counter::RaysRow);
     for (int lane = 0; lane < N; ++lane)
       seen[static_cast<std::size_t>(lane)] += kernel * static_cast<double>(t[lane]);
   }

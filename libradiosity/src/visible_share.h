@@ -10,7 +10,8 @@ namespace atrium::radiosity {
 template <int N>
 using LaneValues = std::array<double, N>;
 
-/// How a pair of patches is sampled: `rays` points of the low-discrepancy sequence of seed and stream.
+/// How a pair of patches is sampled: `rays` points of the low-discrepancy sequence of seed and
+/// stream.
 struct PairSamples {
   std::uint64_t seed;
   std::uint32_t stream;

@@ -14,8 +14,8 @@
 
 namespace atrium::radiosity {
 
-/// Progress, cancellation, the limits of time and memory of one solve. `share` of the whole that a pass covers
-/// moves the reported fraction from where the pass before ended.
+/// Progress, cancellation, the limits of time and memory of one solve. `share` of the whole that a
+/// pass covers moves the reported fraction from where the pass before ended.
 class Work {
  public:
   /// \param time_limit  [s]. \param memory_limit  [bytes]. 0: none.

@@ -137,8 +137,8 @@ TEST(Medium, ExtinctionIsSpectral) {
   scene::Scene scene = maker.take();
   scene.medium_extinction = make_rgb(0.0, 0.5, 1.0);
   const scene::RayQuery query(scene);
-  const SolveResult r = solve(query, material::SpectralBasis::rgb(),
-                              {.element_size = 0.25, .max_level = 0});
+  const SolveResult r =
+      solve(query, material::SpectralBasis::rgb(), {.element_size = 0.25, .max_level = 0});
   const auto lane_alone = [&](double k) {
     SceneMaker grey;
     grey.room({0, 0, 0}, {2, 2, 2}, grey.material(test::diffuse(0.5)));
@@ -174,7 +174,11 @@ TEST(Medium, SolversAgree) {
     scene.medium_extinction = extinction;
     const scene::RayQuery query(scene);
     return solve(query, basis,
-                 {.solver = solver, .element_size = 0.75, .max_level = 0, .direct_samples = 64, .tolerance = 1e-3});
+                 {.solver = solver,
+                  .element_size = 0.75,
+                  .max_level = 0,
+                  .direct_samples = 64,
+                  .tolerance = 1e-3});
   };
   const auto received = [](const SolveResult& r, std::size_t lane) {
     const auto lanes = static_cast<std::size_t>(r.field.lanes);

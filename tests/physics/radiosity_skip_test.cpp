@@ -12,8 +12,8 @@ using scene::Counter;
 using test::SceneMaker;
 using test::Solved;
 
-/// Two rooms of 3 m beside each other, each with a lamp, and a door of 1 m x 2 m in the wall between
-/// them at x = 3. A mirror may hang on the far wall of the second one.
+/// Two rooms of 3 m beside each other, each with a lamp, and a door of 1 m x 2 m in the wall
+/// between them at x = 3. A mirror may hang on the far wall of the second one.
 scene::Scene two_rooms(bool second_lamp = true, bool door = true) {
   SceneMaker maker;
   const auto white = maker.material(test::diffuse(0.6));
@@ -152,8 +152,8 @@ TEST(Views, AreNotForSolutionsThatAreKept) {
 
 // A side whose first 16 rays find nothing lit keeps those and gets no others.
 TEST(Skip, UnlitRoomsCostAFirstRoundOfRays) {
-  const SolveOptions options{.element_size = 0.2, .max_level = 0, .row_rays = 64,
-                             .gather_rays = 128};
+  const SolveOptions options{
+      .element_size = 0.2, .max_level = 0, .row_rays = 64, .gather_rays = 128};
   const Solved both(two_rooms(true, false), options);
   const Solved one(two_rooms(false, false), options);
   std::size_t dark = 0;
@@ -164,8 +164,8 @@ TEST(Skip, UnlitRoomsCostAFirstRoundOfRays) {
       ++(one.total(e, side) > 0.0 ? lit : dark);
     }
   ASSERT_GT(dark, lit);  // outer sides of walls are dark as well
-  // Every ray of a diffuse scene is one segment. A quarter of those that gather makes the field that
-  // the rest read.
+  // Every ray of a diffuse scene is one segment. A quarter of those that gather makes the field
+  // that the rest read.
   EXPECT_EQ(one.result.counters[Counter::RaysRow], 16 * dark + (64 + 128) * lit);
   EXPECT_LT(one.result.counters[Counter::RaysRow], 0.6 * both.result.counters[Counter::RaysRow]);
 }

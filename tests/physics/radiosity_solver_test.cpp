@@ -50,7 +50,8 @@ scene::Scene furnished_room() {
   return maker.take();
 }
 
-// Closed room of one reflectance under a bright ceiling: its surfaces receive Phi / (1 - rho) in all.
+// Closed room of one reflectance under a bright ceiling: its surfaces receive Phi / (1 - rho) in
+// all.
 scene::Scene closed_room(float reflectance) {
   SceneMaker maker;
   const auto white = maker.material(test::diffuse(reflectance));
@@ -103,8 +104,9 @@ TEST(Rows, ManyRoundsStayWhereTheyWere) {
 // The same room by three methods that share little: sampled rows, exact factors with a dense
 // solution, and shooting.
 TEST(Solvers, Agree) {
-  const Solved rows(furnished_room(),
-                    {.element_size = 0.5, .max_level = 0, .gather_rays = 512, .direct_samples = 256});
+  const Solved rows(
+      furnished_room(),
+      {.element_size = 0.5, .max_level = 0, .gather_rays = 512, .direct_samples = 256});
   const Solved matrix(furnished_room(), {.solver = Solver::Matrix, .element_size = 0.5});
   const Solved shooting(
       furnished_room(),
@@ -148,13 +150,14 @@ TEST(Shooting, OpenSceneBalances) {
   const Solved s(maker.take(), {.solver = Solver::Shooting, .element_size = 0.25});
   const FluxBalance& f = s.result.flux;
   EXPECT_NEAR(f.emitted, kPi, 1e-6);
-  RecordProperty("imbalance", std::to_string(1e9 * (f.absorbed + f.escaped - f.emitted) / f.emitted) + "e-9");
+  RecordProperty("imbalance",
+                 std::to_string(1e9 * (f.absorbed + f.escaped - f.emitted) / f.emitted) + "e-9");
   EXPECT_NEAR(f.absorbed + f.escaped, f.emitted, 1e-5 * f.emitted);
   EXPECT_NEAR(f.escaped, 0.8085 * f.emitted, 0.003 * f.emitted);  // the solver 'matrix': 0.80847
 }
 
-// Cohen et al. 1988: what has not been shot, spread evenly as if it had been, makes a useful display
-// of a few shots. Elements in the plane of the only shooters have received nothing else.
+// Cohen et al. 1988: what has not been shot, spread evenly as if it had been, makes a useful
+// display of a few shots. Elements in the plane of the only shooters have received nothing else.
 TEST(Shooting, AmbientTermAnticipatesWhatIsToCome) {
   const auto solved = [](double tolerance) {
     SceneMaker maker;
@@ -167,7 +170,8 @@ TEST(Shooting, AmbientTermAnticipatesWhatIsToCome) {
                   {.solver = Solver::Shooting, .element_size = 0.5, .tolerance = tolerance});
   };
   const auto mean = [](const Solved& s) {
-    return s.mean([&](std::size_t e) { return s.total(e); }, [](std::size_t) { return true; }).value;
+    return s.mean([&](std::size_t e) { return s.total(e); }, [](std::size_t) { return true; })
+        .value;
   };
   const Solved converged = solved(1e-3);
   for (const double tolerance : {0.98, 0.9, 0.7, 0.5}) {
@@ -199,7 +203,8 @@ TEST(Solvers, BlackSurfacesAbsorb) {
     const Solved s(maker.take(), {.solver = solver, .element_size = 0.5, .direct_samples = 256});
     const FluxBalance& f = s.result.flux;
     EXPECT_NEAR(f.escaped, 0.0, 1e-12 * f.emitted);
-    EXPECT_NEAR(f.absorbed, f.emitted, solver == Solver::Rows ? 0.01 * f.emitted : 1e-4 * f.emitted);
+    EXPECT_NEAR(f.absorbed, f.emitted,
+                solver == Solver::Rows ? 0.01 * f.emitted : 1e-4 * f.emitted);
   }
 }
 
@@ -255,8 +260,8 @@ TEST(Rows, DividedElementsHaveUnbiasedSamples) {
                                   .gather_rays = 16,
                                   .direct_samples = 16,
                                   .seed = static_cast<std::uint64_t>(seed)});
-    const auto mean = s.mean([&](std::size_t e) { return s.direct(e); },
-                             [](std::size_t) { return true; });
+    const auto mean =
+        s.mean([&](std::size_t e) { return s.direct(e); }, [](std::size_t) { return true; });
     sum += mean.value / kSeeds;
     variance += mean.error * mean.error / (kSeeds * kSeeds);
   }

@@ -26,7 +26,7 @@ struct ElementPiece {
   float area = 0.0f;               ///< [m^2]
   std::span<const Vec3f> corners;  ///< 3 or more, in the triangle's plane, its winding
   static constexpr std::uint32_t kWhole = 0xffffffffU;
-  std::uint32_t part = kWhole;     ///< of ElementPieces::parts(), if the triangle is divided
+  std::uint32_t part = kWhole;  ///< of ElementPieces::parts(), if the triangle is divided
 };
 
 /// Part of a triangle on one side of the walls that stand on it.

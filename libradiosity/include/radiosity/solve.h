@@ -34,7 +34,7 @@ enum class Keep {
 /// A picture that will be made of a solution.
 struct View {
   scene::Camera camera;
-  double aspect = 4.0 / 3.0;                      ///< width / height of the whole picture
+  double aspect = 4.0 / 3.0;                       ///< width / height of the whole picture
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1: the part that is wanted
 };
 
@@ -45,7 +45,7 @@ struct SolveOptions {
   int max_level = 3;        ///< how often an element may be halved where light changes; 0: never
   double mesh_error = 0.0;  ///< RMS that interpolation of direct light may miss, as a share of the
                             ///< irradiance, before elements are divided; 0: 0.7 error, or 3 %
-  int row_rays = 64;                   ///< hemisphere rays per element side kept as a row
+  int row_rays = 64;        ///< hemisphere rays per element side kept as a row
   int gather_rays = 128;    ///< further rays per element side, streamed against the solution
   int direct_samples = 16;  ///< light samples per element side
   std::uint64_t caustic_photons =
@@ -62,19 +62,20 @@ struct SolveOptions {
   std::uint64_t seed = 1;
   Keep keep = Keep::Nothing;  ///< solver Rows only
   /// If nothing but pictures of these views will use the solution: surfaces that none of them sees,
-  /// nor light straight from, get fewer samples, and errors are weighted by what they matter. Solver
-  /// Rows with keep Nothing only. Empty: every surface matters.
+  /// nor light straight from, get fewer samples, and errors are weighted by what they matter.
+  /// Solver Rows with keep Nothing only. Empty: every surface matters.
   std::vector<View> views = {};
   scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
-  bool paper_weights = false;          ///< scene::Weights::Paper: for pictures in paper mode
-  int probes = 0;  ///< points of the Certificate; 0: none is made
+  bool paper_weights = false;  ///< scene::Weights::Paper: for pictures in paper mode
+  int probes = 0;              ///< points of the Certificate; 0: none is made
 };
 
-/// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + in_medium within their errors.
+/// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + in_medium within their
+/// errors.
 struct FluxBalance {
-  double emitted = 0.0;   ///< by the lights
-  double absorbed = 0.0;  ///< counted at the surfaces
-  double escaped = 0.0;   ///< counted at rays that leave the scene
+  double emitted = 0.0;    ///< by the lights
+  double absorbed = 0.0;   ///< counted at the surfaces
+  double escaped = 0.0;    ///< counted at rays that leave the scene
   double in_medium = 0.0;  ///< counted where the air absorbs (Scene::medium_extinction)
   double standard_error = 0.0;
 };
@@ -119,7 +120,7 @@ struct SolveResult {
   MemoryUse memory;
   /// What SolveOptions::memory_limit made smaller, one line each: "1000 elements instead of 60000".
   std::vector<std::string> given_up;
-  bool complete = true;    ///< false: stopped by time or request; the field is usable all the same
+  bool complete = true;  ///< false: stopped by time or request; the field is usable all the same
   /// "interrupt", "time limit"; "memory limit": the solve went to its end, but `given_up` says with
   /// what less; "iterations"; if an error was asked for "error" (reached) or "rounds" (not), else
   /// "tolerance"
@@ -144,8 +145,8 @@ struct Previous {
 /// The same, going on from an earlier solve.
 ///
 /// Of the same scene: an interrupted solve goes on where it was, and ends with the bits of one that
-/// was not interrupted (the chunk of samples, or the photons, that it was drawing are drawn again). A
-/// finished one takes the samples that a smaller SolveOptions::error needs.
+/// was not interrupted (the chunk of samples, or the photons, that it was drawing are drawn again).
+/// A finished one takes the samples that a smaller SolveOptions::error needs.
 ///
 /// Of a scene where only diffuse reflectances differ (scene::hash_scene_but_reflectance): elements,
 /// direct light, caustics and, if they were kept, rows stay. Rows are traced again if that concerns

@@ -106,8 +106,8 @@ struct LightSampler<N>::Impl {
   EmissionSample<N> sky_emission(std::size_t i, const Vec2f& u_position,
                                  const Vec2f& u_direction) const {
     if (i < sky.points().size())
-      return arriving(sky.points()[i].direction, sky.points()[i].irradiance,
-                      sky.points()[i].light, u_position);
+      return arriving(sky.points()[i].direction, sky.points()[i].irradiance, sky.points()[i].light,
+                      u_position);
     i -= sky.points().size();
     if (i < sky.discs().size())
       return arriving(Sky::disc_direction(sky.discs()[i], u_direction), sky.discs()[i].irradiance,

@@ -168,8 +168,8 @@ bool consistent(const SurfaceField& f) {
   const auto sized = [&](const std::vector<float>& v, std::size_t size) {
     return v.empty() || v.size() == size;
   };
-  bool ok = (f.lanes == 1 || f.lanes == 3 || f.lanes == 4 || f.lanes == 8) &&
-            cuts_consistent(f) && nodes_consistent(f) && elements_consistent(f);
+  bool ok = (f.lanes == 1 || f.lanes == 3 || f.lanes == 4 || f.lanes == 8) && cuts_consistent(f) &&
+            nodes_consistent(f) && elements_consistent(f);
   const std::size_t values = n * 2 * static_cast<std::size_t>(std::max(f.lanes, 0));
   for (const SurfaceField::Quantities* q : {&f.irradiance, &f.body_irradiance}) {
     ok = ok && sized(q->direct, values) && sized(q->caustic, values) && sized(q->indirect, values);

@@ -62,9 +62,8 @@ Sun read_sun(const YamlScene& scene, const std::optional<YamlView>& view) {
   Sun sun;
   sun.view = view;
   if (!view) return sun;
-  const YamlMap map = view->map(
-      "sun", {"azimuth", "elevation", "place", "time", "irradiance", "color", "angular_diameter",
-              "light_group"});
+  const YamlMap map = view->map("sun", {"azimuth", "elevation", "place", "time", "irradiance",
+                                        "color", "angular_diameter", "light_group"});
   sun.light_group = read_light_group(map);
   if (map.has("place") || map.has("time")) {
     if (map.has("azimuth") || map.has("elevation"))
@@ -144,9 +143,8 @@ Sky read_weather(const YamlScene& scene, const YamlMap& map, Sun& sun) {
 }
 
 Environment read_sky(const YamlScene& scene, const YamlView& view, Sun& sun) {
-  const YamlMap map =
-      view.map("sky", {"cie", "perez", "epw", "time", "irradiance", "zenith", "ground", "color",
-                       "light_group"});
+  const YamlMap map = view.map("sky", {"cie", "perez", "epw", "time", "irradiance", "zenith",
+                                       "ground", "color", "light_group"});
   const std::string kind = map.one_of({"cie", "perez", "epw"});
   for (const char* key : {"irradiance", "zenith"})
     if (kind != "cie" && map.has(key)) map.get(key).fail("this key belongs to a cie sky");

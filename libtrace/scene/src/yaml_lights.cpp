@@ -236,8 +236,8 @@ Image read_sky_image(const YamlView& view) {
 }
 
 Environment read_environment(YamlScene& scene, const YamlView& view) {
-  const YamlMap map = view.map("environment", {"radiance", "color", "image", "rotate",
-                                               "light_group"});
+  const YamlMap map =
+      view.map("environment", {"radiance", "color", "image", "rotate", "light_group"});
   Environment environment;
   environment.light_group = read_light_group(map);
   environment.radiance = read_emitted(scene, map, "radiance");

@@ -180,10 +180,10 @@ Placed read_model_file(YamlScene& scene, const YamlView& view) {
 }
 
 Placed read_object(YamlScene& scene, const YamlView& view) {
-  const YamlMap map =
-      view.map("object", {"name", "box", "polygon", "mesh", "sphere", "cylinder", "cage", "file",
-                          "use", "group", "light", "material", "materials", "translate", "rotate",
-                          "scale", "matrix", "at", "repeat", "light_group"});
+  const YamlMap map = view.map(
+      "object", {"name",   "box",   "polygon", "mesh",  "sphere",   "cylinder",   "cage",
+                 "file",   "use",   "group",   "light", "material", "materials",  "translate",
+                 "rotate", "scale", "matrix",  "at",    "repeat",   "light_group"});
   const std::string kind = map.one_of(
       {"box", "polygon", "mesh", "sphere", "cylinder", "cage", "file", "use", "group", "light"});
   const std::string name = map.has("name") ? map.get("name").text() : kind;

@@ -206,14 +206,16 @@ cameras: [{name: eye, perspective: {eye: [0, 0, 1.5], target: [0, 0, 0]}}]
   expect_error(run(folder, "reweight s.atrium --set middle=1 -o x.atrium"), 2, "'left', 'right'");
   expect_error(run(folder, "reweight s.atrium --set left=-1 -o x.atrium"), 2, "left=-1");
   expect_error(run(folder, "reweight s.atrium --set left -o x.atrium"), 2, "NAME=FACTOR");
-  expect_error(run(folder, "render s.yaml -o x.pfm --quiet --size 24x18 --solution dim.atrium"), 2, "dimmed");
+  expect_error(run(folder, "render s.yaml -o x.pfm --quiet --size 24x18 --solution dim.atrium"), 2,
+               "dimmed");
   // Nothing is left to do, so nothing changes.
   const Result again =
       run(folder, "solve s.yaml --light-groups --keep-rows --solution s.atrium -o t.atrium" + rest);
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(read_file(folder / "s.atrium"), read_file(folder / "t.atrium"));
   expect_error(run(folder, "solve s.yaml --solution s.atrium -o u.atrium" + rest), 2, "go on from");
-  expect_error(run(folder, "solve s.yaml --solution dim.atrium -o u.atrium" + rest), 2, "go on from");
+  expect_error(run(folder, "solve s.yaml --solution dim.atrium -o u.atrium" + rest), 2,
+               "go on from");
   expect_error(run(folder, "solve s.yaml --solver matrix --light-groups -o u.atrium" + rest), 2,
                "light groups");
 }
@@ -245,8 +247,9 @@ TEST_F(AtriumRun, StatisticsSayWhichErrorIsMeant) {
   EXPECT_NE(error().find("\"verdict\": \""), none) << error();
 
   // A picture's own error has neither target nor interval; that of its radiosity is beside it.
-  run(folder, "render a.obj -o a.pfm --size 24x18 --samples 2 --quality draft --probes 16 --quiet "
-              "--stats s.json");
+  run(folder,
+      "render a.obj -o a.pfm --size 24x18 --samples 2 --quality draft --probes 16 --quiet "
+      "--stats s.json");
   EXPECT_NE(error().find("\"target\": null"), none) << error();
   EXPECT_EQ(error().find("\"verdict\""), none) << error();
   const std::string radiosity = json_member(read_file(folder / "s.json"), "radiosity");
@@ -256,7 +259,8 @@ TEST_F(AtriumRun, StatisticsSayWhichErrorIsMeant) {
 // Grey: one lane, less memory. The rays are the same.
 TEST_F(AtriumRun, GreyScenesAreSolvedInOneLane) {
   const auto solve = [&] {
-    EXPECT_EQ(run(folder, "solve a.obj -o a.atrium --quality draft --quiet --stats s.json").code, 0);
+    EXPECT_EQ(run(folder, "solve a.obj -o a.atrium --quality draft --quiet --stats s.json").code,
+              0);
     return read_file(folder / "s.json");
   };
   const auto number = [](const std::string& stats, const std::string& name) {

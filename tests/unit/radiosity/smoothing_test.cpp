@@ -71,8 +71,7 @@ TEST(Smoothing, TakesNoiseOffAndLeavesSteps) {
 TEST(Smoothing, RefusesWeightsOfOtherSides) {
   const Box box{closed_box(0.5)};
   const Neighbours neighbours(box.elements.layout);
-  EXPECT_THROW(Smoothing<1>(box.problem, neighbours, std::vector<float>(3)),
-               std::invalid_argument);
+  EXPECT_THROW(Smoothing<1>(box.problem, neighbours, std::vector<float>(3)), std::invalid_argument);
 }
 
 }  // namespace

@@ -123,7 +123,8 @@ TEST(SolutionIo, IndicesOutOfRangeAreErrors) {
   refused([](SurfaceField& f) { f.element_facet[0] = 7; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = 2; });
   refused([](SurfaceField& f) { f.triangle_facet[0] = SurfaceField::kCut | 2; });
-  refused([](SurfaceField& f) { f.cuts[1].child[0] = SurfaceField::kCut | 1; });  // round in circles
+  refused(
+      [](SurfaceField& f) { f.cuts[1].child[0] = SurfaceField::kCut | 1; });  // round in circles
   refused([](SurfaceField& f) { f.cuts[0].child[0] = 2; });
   refused([](SurfaceField& f) { f.facets[1].first_cell = 7; });
   refused([](SurfaceField& f) { f.facets[1].nx = 0; });

@@ -17,14 +17,15 @@ namespace atrium::scene {
 /// A light as seen from a point: where to send the shadow ray and what arrives if it is free.
 template <int N>
 struct LightSample {
-  Vec3f wi;               ///< unit, towards the light
-  float distance = 0.0f;  ///< to the sampled point; infinity for sun and environment
-  Vec3f end = Vec3f::Zero();  ///< where a shadow ray ends: the point, off an emissive surface; finite lights only
-  Spectrum<N> radiance;   ///< radiance of the light towards the point; for Dirac lights the
-                          ///< irradiance on a plane facing them
+  Vec3f wi;                   ///< unit, towards the light
+  float distance = 0.0f;      ///< to the sampled point; infinity for sun and environment
+  Vec3f end = Vec3f::Zero();  ///< where a shadow ray ends: the point, off an emissive surface;
+                              ///< finite lights only
+  Spectrum<N> radiance;       ///< radiance of the light towards the point; for Dirac lights the
+                              ///< irradiance on a plane facing them
   float pdf = 0.0f;  ///< [1/sr] including the choice of the light; Dirac: probability of the choice
   bool dirac = false;        ///< point, spot, directional: cannot be hit by chance
-  std::uint32_t light = 0;  ///< of lights at a place: Scene::lights, then emissive triangles
+  std::uint32_t light = 0;   ///< of lights at a place: Scene::lights, then emissive triangles
   std::uint32_t source = 0;  ///< number of light_groups.h; of the sky: see LightSampler::sky_parts
 };
 

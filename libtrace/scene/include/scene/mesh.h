@@ -51,7 +51,7 @@ struct Mesh {
   std::vector<Vec2f> uvs;      ///< or empty
   std::vector<Vec3f> colors;   ///< or empty
   std::vector<Triangle> triangles;
-  bool closed = false;    ///< every edge is passed as often one way as the other: bounds a volume
+  bool closed = false;  ///< every edge is passed as often one way as the other: bounds a volume
 };
 
 /// A mesh with a material at a place.

@@ -32,7 +32,7 @@ struct Model {
   std::vector<Light> lights;    ///< to_scene is to_world here
   std::vector<Camera> cameras;  ///< likewise
   std::optional<Environment> environment;
-  PortalHints portals;          ///< in world coordinates
+  PortalHints portals;  ///< in world coordinates
   /// K [1/m] of the air: a medium that fills the bounds of the geometry, absorbs and does not
   /// scatter.
   SpectralValue medium_extinction = 0.0;
@@ -47,14 +47,14 @@ struct LoadReport {
   std::uint64_t duplicate_dropped = 0;
   std::uint64_t vertices_welded = 0;
   std::uint64_t non_finite_dropped = 0;
-  std::uint64_t triangles_flipped = 0;     ///< winding made consistent
+  std::uint64_t triangles_flipped = 0;  ///< winding made consistent
   std::uint64_t non_manifold_edges = 0;
-  std::uint64_t t_junctions = 0;           ///< estimate: vertices inside another boundary edge
-  std::uint64_t coplanar_twins = 0;        ///< same three positions in another object; kept
+  std::uint64_t t_junctions = 0;     ///< estimate: vertices inside another boundary edge
+  std::uint64_t coplanar_twins = 0;  ///< same three positions in another object; kept
   std::uint64_t meshes_closed = 0;
   std::uint64_t meshes_shared = 0;
-  std::uint64_t normals_made = 0;          ///< meshes that came without
-  std::uint64_t panes_recognised = 0;      ///< closed solids turned into thin panes
+  std::uint64_t normals_made = 0;      ///< meshes that came without
+  std::uint64_t panes_recognised = 0;  ///< closed solids turned into thin panes
   std::uint64_t subdivision_triangles = 0;
   std::vector<std::string> warnings;
 };
@@ -76,7 +76,9 @@ struct Scene {
   Bounds bounds;                 ///< of all geometry, scene coordinates
   LoadReport report;
 
-  [[nodiscard]] const Mesh& mesh_of(ObjectId id) const { return meshes[objects[id.value].mesh.value]; }
+  [[nodiscard]] const Mesh& mesh_of(ObjectId id) const {
+    return meshes[objects[id.value].mesh.value];
+  }
   [[nodiscard]] const material::Material& material_of(ObjectId id) const {
     return materials[objects[id.value].material.value];
   }
@@ -86,12 +88,12 @@ struct Scene {
 };
 
 struct BuildOptions {
-  bool pane_detection = true;   ///< closed solids with two parallel faces become thin panes
-  bool repair = true;           ///< drop, weld, make winding consistent
+  bool pane_detection = true;  ///< closed solids with two parallel faces become thin panes
+  bool repair = true;          ///< drop, weld, make winding consistent
   /// Subdivision surfaces: largest distance between limit surface and triangles, as a share of the
   /// distance to the eye (or of the scene's diagonal where there is no camera).
   double subdivision_error = 1e-3;
-  std::optional<Camera> view;   ///< in world coordinates; tessellation follows it
+  std::optional<Camera> view;  ///< in world coordinates; tessellation follows it
 };
 
 /// Repairs, rebases to the centre, tessellates, shares meshes, recognises panes.

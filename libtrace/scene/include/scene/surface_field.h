@@ -30,8 +30,8 @@ struct SurfaceField {
   static constexpr int kMaxLevel = 12;
 
   struct Facet {
-    Vec3f origin;             ///< scene coordinates of the grid's corner
-    Vec3f axis_u, axis_v;     ///< in the plane, length 1 / cell size [1/m]
+    Vec3f origin;          ///< scene coordinates of the grid's corner
+    Vec3f axis_u, axis_v;  ///< in the plane, length 1 / cell size [1/m]
     std::uint32_t nx = 0, ny = 0;
     std::uint32_t first_cell = 0;  ///< into nodes
     std::uint8_t clump = 0;        ///< many tiny regions as one cell: its plane means little
@@ -62,17 +62,17 @@ struct SurfaceField {
   std::vector<std::uint32_t> triangle_facet;
   std::vector<Cut> cuts;
   std::vector<std::uint32_t> element_facet;
-  std::vector<std::uint8_t> element_level;      ///< 0: a cell of the facet's grid; each level halves
-  std::vector<std::uint32_t> element_x;         ///< cell coordinates at the element's level:
-  std::vector<std::uint32_t> element_y;         ///< in [0, nx << level), [0, ny << level)
-  std::vector<float> element_area;              ///< [m^2]
+  std::vector<std::uint8_t> element_level;  ///< 0: a cell of the facet's grid; each level halves
+  std::vector<std::uint32_t> element_x;     ///< cell coordinates at the element's level:
+  std::vector<std::uint32_t> element_y;     ///< in [0, nx << level), [0, ny << level)
+  std::vector<float> element_area;          ///< [m^2]
 
-  Quantities irradiance;                        ///< E
-  Quantities body_irradiance;                   ///< E_B of coupled materials; empty without any
-  std::vector<float> standard_error;            ///< of total E, per element and side (lane mean)
-  std::vector<std::uint8_t> valid;              ///< per element and side: was it computed?
+  Quantities irradiance;              ///< E
+  Quantities body_irradiance;         ///< E_B of coupled materials; empty without any
+  std::vector<float> standard_error;  ///< of total E, per element and side (lane mean)
+  std::vector<std::uint8_t> valid;    ///< per element and side: was it computed?
 
-  std::string unit;                             ///< "lx", "W/m^2"
+  std::string unit;  ///< "lx", "W/m^2"
 
   [[nodiscard]] std::size_t element_count() const { return element_facet.size(); }
   [[nodiscard]] bool empty() const { return element_facet.empty(); }
@@ -110,8 +110,8 @@ struct SurfaceField {
   /// Element of a facet under a point in its plane, or kNone if nothing of it is near.
   [[nodiscard]] std::uint32_t element_of_facet(std::uint32_t facet, const Vec3f& position) const;
   /// Element under a point, or kNone (no facet, or a cell that nothing was found in).
-  [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object, std::uint32_t triangle,
-                                         const Vec3f& position) const;
+  [[nodiscard]] std::uint32_t element_at(const Scene& scene, ObjectId object,
+                                         std::uint32_t triangle, const Vec3f& position) const;
 
   /// Longer edge of an element's cell [m].
   [[nodiscard]] float element_size(std::uint32_t element) const;
@@ -122,8 +122,8 @@ struct SurfaceField {
   /// Bilinear between the four cells of the leaf's own level round the point. Where such a cell is
   /// divided further its value is the mean of its leaves; where a coarser leaf covers it, the
   /// coarser level is interpolated at its centre. So linear functions (given by their cell means)
-  /// are met exactly, on graded meshes too, and no new extrema arise inside a facet. Across a change
-  /// of level there is a step of second order.
+  /// are met exactly, on graded meshes too, and no new extrema arise inside a facet. Across a
+  /// change of level there is a step of second order.
   ///
   /// A cell that is missing (rim, hole, invalid) counts with its neighbour's value and, where three
   /// cells in line with it are known, with the lesser of their two differences if both have one
@@ -150,11 +150,13 @@ struct SurfaceField {
   /// Interpolated value of one array (size element_count * 2 * N), at least 0; 0 where nothing is
   /// known.
   template <int N>
-  [[nodiscard]] Spectrum<N> interpolate(const std::vector<float>& array, const Stencil& s, Side side) const {
+  [[nodiscard]] Spectrum<N> interpolate(const std::vector<float>& array, const Stencil& s,
+                                        Side side) const {
     Spectrum<N> r;
     if (array.empty()) return r;
     for (int i = 0; i < s.count; ++i) {
-      const float* p = &array[(static_cast<std::size_t>(s.element[i]) * 2 + static_cast<std::size_t>(side)) * N];
+      const float* p =
+          &array[(static_cast<std::size_t>(s.element[i]) * 2 + static_cast<std::size_t>(side)) * N];
       for (int k = 0; k < N; ++k) r[k] += s.weight[i] * p[k];
     }
     for (int i = 0; i < s.slope_count; ++i) {
@@ -192,7 +194,8 @@ struct SurfaceField {
     }
     const std::size_t i = std::size_t{node} * 2 + static_cast<std::size_t>(side);
     if (node == kNone || valid[i] == 0) return 0.0f;
-    for (int k = 0; k < N; ++k) sum[k] += element_area[node] * array[i * N + static_cast<std::size_t>(k)];
+    for (int k = 0; k < N; ++k)
+      sum[k] += element_area[node] * array[i * N + static_cast<std::size_t>(k)];
     return element_area[node];
   }
 };
