@@ -12,7 +12,7 @@ double local_mean(const Problem<N>& problem, const Neighbours& neighbours, SideI
                   Value&& value) {
   double sum = value(i);
   double count = 1.0;
-  neighbours.visit(i, [&](SideIndex j, int) {
+  neighbours.visit(i, [&](SideIndex j) {
     if (problem.sides.is_active[j] == 0) return;
     sum += value(j);
     count += 1.0;
@@ -71,11 +71,11 @@ std::vector<double> sample_variance(const Problem<N>& problem, const Neighbours&
     // A ratio of sums: relative variances of nearly dark sides are wild.
     double sum = 0.0;
     double sum_scale = 0.0;
-    const auto take = [&](SideIndex j, int) {
+    const auto take = [&](SideIndex j) {
       sum += own[j];
       sum_scale += scale[j];
     };
-    if (whose == Samples::All) take(i, 0);
+    if (whose == Samples::All) take(i);
     neighbours.visit(i, take);
     if (!(sum_scale > 0.0)) {
       sum = all;

@@ -1,115 +1,26 @@
 #include "smoothing.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 namespace atrium::radiosity {
 
-using scene::SurfaceField;
-
-Neighbours::Neighbours(const SurfaceField& layout)
-    : edges_(edge_neighbours(layout)), level_(layout.element_level) {}
-
-namespace {
-
-/// What the neighbours along one axis say about a side.
-struct Interpolation {
-  struct Part {
-    SideIndex side;
-    double share;
-  };
-  std::array<Part, 4> parts;
-  int count = 0;
-  bool both = false;  ///< neighbours on both sides
-};
-
-/// Along axis 0 (edges 0 and 1) or 1 (edges 2 and 3). Neighbours without samples take no part.
-template <class Usable>
-Interpolation interpolation(const Neighbours& neighbours, SideIndex i, int axis, Usable&& usable) {
-  Interpolation result;
-  std::array<int, 2> count{};
-  std::array<double, 2> distance{};
-  neighbours.visit(i, [&](SideIndex j, int edge) {
-    if (edge / 2 != axis || !usable(j)) return;
-    const auto end = static_cast<std::size_t>(edge % 2);
-    ++count[end];
-    distance[end] = neighbours.distance(i, j);
-    result.parts[static_cast<std::size_t>(result.count++)] = {j, static_cast<double>(end)};
-  });
-  result.both = count[0] > 0 && count[1] > 0;
-  for (int k = 0; k < result.count; ++k) {
-    double& share = result.parts[static_cast<std::size_t>(k)].share;
-    const std::size_t end = share > 0.5 ? 1 : 0;
-    const double whole = result.both ? distance[1 - end] / (distance[0] + distance[1]) : 1.0;
-    share = whole / count[end];
-  }
-  return result;
-}
-
-}  // namespace
+Neighbours::Neighbours(const scene::SurfaceField& layout) : edges_(edge_neighbours(layout)) {}
 
 template <int N>
 Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
                         const SideValues<N>& guide, const std::vector<double>& variance)
     : problem_(&problem), neighbours_(&neighbours) {
-  const auto usable = [&](SideIndex j) {
-    return problem.sides.is_active[j] != 0 && variance[j] > 0.0;
-  };
-  struct Said {
-    double variance = 0.0;
-    double miss = 0.0;  ///< squared, with the noise in it
-    int ends = 0;
-  };
-  std::vector<std::array<Said, 2>> said(problem.side_count());
-  for (const SideIndex i : problem.sides.active) {
-    if (!(variance[i] > 0.0)) continue;
-    for (int axis = 0; axis < 2; ++axis) {
-      const Interpolation p = interpolation(neighbours, i, axis, usable);
-      if (p.count == 0) continue;
-      Said& s = said[i][static_cast<std::size_t>(axis)];
-      double d = static_cast<double>(guide[i].mean());
-      for (int k = 0; k < p.count; ++k) {
-        const auto [j, share] = p.parts[static_cast<std::size_t>(k)];
-        d -= share * static_cast<double>(guide[j].mean());
-        s.variance += share * share * variance[j];
-      }
-      s.miss = d * d;
-      s.ends = p.both ? 2 : 1;
-    }
-  }
-  for (const SideIndex i : problem.sides.active) {
-    std::array<double, 2> precision{};
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const Said& s = said[i][axis];
-      if (s.ends == 0) continue;
-      double sum = s.miss;
-      double count = 1.0;
-      neighbours.visit(i, [&](SideIndex j, int) {
-        const Said& other = said[j][axis];
-        if (other.ends != s.ends) return;
-        sum += other.miss;
-        count += 1.0;
-      });
-      precision[axis] = 1.0 / (s.variance + sum / count);
-    }
-    const double own = variance[i] > 0.0 ? 1.0 / variance[i] : 0.0;
-    const double all = own + precision[0] + precision[1];
-    std::array<Interpolation, 2> along;
-    for (int axis = 0; axis < 2; ++axis)
-      if (precision[static_cast<std::size_t>(axis)] > 0.0)
-        along[static_cast<std::size_t>(axis)] = interpolation(neighbours, i, axis, usable);
-    neighbours.visit(i, [&](SideIndex j, int edge) {
-      const auto axis = static_cast<std::size_t>(edge / 2);
-      double weight = 0.0;
-      for (int k = 0; k < along[axis].count; ++k) {
-        const auto& part = along[axis].parts[static_cast<std::size_t>(k)];
-        if (part.side == j) weight = part.share * precision[axis] / all;
-      }
-      weight_.push_back(static_cast<float>(weight));
+  for (const SideIndex i : problem.sides.active)
+    neighbours.visit(i, [&](SideIndex j) {
+      const double d = static_cast<double>(guide[i].mean()) - static_cast<double>(guide[j].mean());
+      const double v = variance[i] + variance[j];
+      const bool takes_part = problem.sides.is_active[j] != 0 && v > 0.0;
+      // What i gives to j it takes from j: area times weight is the same in both directions. Four
+      // neighbours of the same size that are no more than noise away make a mean of five.
+      const float share = std::min(problem.area(i), problem.area(j)) / (5.0f * problem.area(i));
+      weight_.push_back(takes_part ? share * static_cast<float>(v / (v + d * d)) : 0.0f);
     });
-  }
-  complete();
 }
 
 template <int N>
@@ -117,20 +28,8 @@ Smoothing<N>::Smoothing(const Problem<N>& problem, const Neighbours& neighbours,
                         std::vector<float> weight)
     : problem_(&problem), neighbours_(&neighbours), weight_(std::move(weight)) {
   std::size_t count = 0;
-  for (const SideIndex i : problem.sides.active)
-    neighbours.visit(i, [&](SideIndex, int) { ++count; });
+  for (const SideIndex i : problem.sides.active) neighbours.visit(i, [&](SideIndex) { ++count; });
   if (weight_.size() != count) throw std::invalid_argument("Smoothing: weights of other sides");
-  complete();
-}
-
-template <int N>
-void Smoothing<N>::complete() {
-  own_.assign(problem_->side_count(), 1.0f);
-  std::size_t at = 0;
-  for (const SideIndex i : problem_->sides.active) {
-    neighbours_->visit(i, [&](SideIndex, int) { own_[i] -= weight_[at++]; });
-    own_[i] = std::max(0.0f, own_[i]);  // rounding
-  }
 }
 
 template <int N>
@@ -138,8 +37,10 @@ SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
   SideValues<N> result(values.size());
   std::size_t at = 0;
   for (const SideIndex i : problem_->sides.active) {
-    result[i] = own_[i] * values[i];
-    neighbours_->visit(i, [&](SideIndex j, int) { result[i] += weight_[at++] * values[j]; });
+    result[i] = values[i];
+    neighbours_->visit(i, [&](SideIndex j) {
+      result[i] += weight_[at++] * (values[j] - values[i]);
+    });
   }
   return result;
 }

@@ -22,8 +22,7 @@ struct GroupLight {
   SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
   SideValues<N> seen;           ///< bounced, smoothed: what fresh rays read beside the source
   SideValues<N> read;           ///< what the fresh rays so far have read, or as if they had
-  std::optional<Smoothing<N>> smoothing;       ///< that made `seen`
-  std::optional<Smoothing<N>> next_smoothing;  ///< that made `indirect`
+  std::optional<Smoothing<N>> smoothing;  ///< that made `seen`
 };
 
 /// Samples per replicate that a side has to get to; may be asked for any number of times.
@@ -535,8 +534,7 @@ class RowSolver {
         g.bounced.resize(problem_.side_count());
         const Iteration it = solve_rows(problem_, rows_, source, shot, g.bounced, work_);
         if (it.iterations >= slowest.iterations) slowest = it;
-        g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, row_variances(g));
-        g.seen = (*g.smoothing)(g.bounced);
+        smooth(g, row_variances(g));
       } else {
         SideValues<N> change(problem_.side_count());
         const Iteration it = solve_rows(problem_, rows_, minus(source, g.solved_source),
@@ -556,14 +554,19 @@ class RowSolver {
     iterations_before_assembly_ = slowest.iterations;
   }
 
+  void smooth(GroupLight<N>& g, const std::vector<double>& variance) const {
+    g.smoothing = Smoothing<N>(problem_, neighbours_, g.bounced, variance);
+    g.seen = (*g.smoothing)(g.bounced);
+  }
+
   /// What samples found is a better field than the rows' for the next samples to read.
   void refine_field() {
     iterations_before_assembly_ = result_.iteration.iterations;
-    for (GroupLight<N>& g : groups_) {
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      GroupLight<N>& g = groups_[n];
       for (const SideIndex i : problem_.sides.active)
         g.bounced[i] = exchange(problem_, g.indirect, i);
-      g.seen = g.bounced;
-      g.smoothing = g.next_smoothing;
+      smooth(g, indirect_variances(n));
       g.refined = true;
     }
   }
@@ -599,6 +602,11 @@ class RowSolver {
     estimate_error();
   }
 
+  [[nodiscard]] std::vector<double> indirect_variances(std::size_t group) const {
+    const std::vector<float>& v = group_variances_[group].indirect;
+    return {v.begin(), v.end()};
+  }
+
   void pool(std::size_t group) {
     GroupLight<N>& g = groups_[group];
     g.indirect = Irradiance<N>(problem_.side_count(), problem_.sides.any_coupled);
@@ -611,13 +619,9 @@ class RowSolver {
     SideValues<N> difference(problem_.side_count());
     for (const SideIndex i : problem_.sides.active)
       difference[i] = exchange(problem_, g.indirect, i);
-    g.next_smoothing =
-        Smoothing<N>(problem_, neighbours_, difference, group_variances_[group].own);
-    const Smoothing<N>& smoothing = *g.next_smoothing;
-    g.indirect.plain = smoothing(g.indirect.plain);
-    if (problem_.sides.any_coupled) g.indirect.body = smoothing(g.indirect.body);
-    for (const SideIndex i : problem_.sides.active)
-      difference[i] = exchange(problem_, g.indirect, i) - g.seen[i];
+    const Smoothing<N> smoothing(problem_, neighbours_, difference, indirect_variances(group));
+    difference = smoothing(difference);
+    for (const SideIndex i : problem_.sides.active) difference[i] -= g.seen[i];
     const SideValues<N> none(problem_.side_count());
     SideValues<N> change(problem_.side_count());
     const Iteration more = solve_rows(problem_, rows_, difference, none, change, work_);
@@ -674,11 +678,8 @@ class RowSolver {
     sum(&GroupLight<N>::indirect, result_.indirect);
   }
 
-  /// By side.
   struct Variances {
-    std::vector<float> direct, caustic;
-    std::vector<double> own;     ///< of indirect light, by a side's own rays
-    std::vector<double> shared;  ///< of indirect light, by what neighbours see as well
+    std::vector<float> direct, caustic, indirect;  ///< by side
   };
 
   /// Variances of the means of one group, or of the sum of all.
@@ -690,8 +691,7 @@ class RowSolver {
     const std::vector<double> fresh = of(gathered_);
     const std::vector<double> shot = of(shot_);
     const std::vector<float> none(problem_.side_count(), 0.0f);
-    const std::vector<double> nought(problem_.side_count(), 0.0);
-    Variances v{none, none, nought, nought};
+    Variances v{none, none, none};
     std::vector<double> total(problem_.side_count(), 0.0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
@@ -700,13 +700,10 @@ class RowSolver {
       v.direct[i] = static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
       v.caustic[i] = exposed * exposed * caustic_variance(i, group);
       const double shots = shot_.valid(i);
-      v.own[i] =
-          indirect_variance(k, fresh[i], group) + (shots > 0.0 ? shot[i] / shots : 0.0);
-      float seen = 0.0f;
-      for (std::size_t g = first_of(group); g < end_of(group); ++g)
-        seen = std::max(seen, groups_[g].smoothing->gain()[i]);
+      v.indirect[i] = static_cast<float>(indirect_variance(k, fresh[i], group) +
+                                         (shots > 0.0 ? shot[i] / shots : 0.0));
       total[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.caustic[i]) +
-                 static_cast<double>(seen) * v.own[i];
+                 static_cast<double>(v.indirect[i]);
     }
     const double common = hot_flux_variance(group);
     if (common > 0.0)
@@ -714,7 +711,7 @@ class RowSolver {
         double first = 0.0;
         for (std::size_t g = first_of(group); g < end_of(group); ++g)
           first += static_cast<double>(shot_.mean(i, g).mean());
-        v.shared[i] += common * first * first;
+        v.indirect[i] += static_cast<float>(common * first * first);
       }
     // The errors of what a side sees reach it too, as far as they do not average out.
     std::vector<double> leaving_variance(problem_.side_count(), 0.0);
@@ -724,7 +721,8 @@ class RowSolver {
       leaving_variance[i] = rho * rho * total[i] + tau * tau * total[i ^ 1U];
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      v.shared[problem_.sides.active[k]] += rows_.apply_squared(k, leaving_variance);
+      v.indirect[problem_.sides.active[k]] +=
+          static_cast<float>(rows_.apply_squared(k, leaving_variance));
     return v;
   }
   [[nodiscard]] static std::size_t first_of(GroupChoice group) { return group.value_or(0); }
@@ -737,33 +735,9 @@ class RowSolver {
     for (std::size_t g = 0; g < groups_.size(); ++g) group_variances_.push_back(variances(g));
   }
 
-  /// Variance of the smoothed indirect light.
-  [[nodiscard]] static std::vector<float> smoothed(const Variances& v,
-                                                   const std::vector<float>& gain) {
-    std::vector<float> result(v.own.size());
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = static_cast<float>(static_cast<double>(gain[i]) * v.own[i] + v.shared[i]);
-    return result;
-  }
-
   void estimate_error() {
-    if (groups_.size() == 1) {
-      gain_ = groups_[0].next_smoothing->gain();
-    } else {
-      gain_.assign(problem_.side_count(), 1.0f);
-      for (const SideIndex i : problem_.sides.active) {
-        double all = 0.0;
-        double left = 0.0;
-        for (std::size_t g = 0; g < groups_.size(); ++g) {
-          all += group_variances_[g].own[i];
-          left += group_variances_[g].own[i] *
-                  static_cast<double>(groups_[g].next_smoothing->gain()[i]);
-        }
-        if (all > 0.0) gain_[i] = static_cast<float>(left / all);
-      }
-    }
     const Variances v = groups_.size() == 1 ? group_variances_[0] : variances(kAllGroups);
-    result_.indirect.variance = smoothed(v, gain_);
+    result_.indirect.variance = v.indirect;
     result_.direct.variance = v.direct;
     result_.caustic.variance = v.caustic;
     SideValues<N> irradiance(problem_.side_count());
@@ -790,7 +764,7 @@ class RowSolver {
       for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
       result_.groups.push_back({std::move(groups_[g].direct), std::move(groups_[g].caustic),
                                 std::move(groups_[g].indirect), std::move(v.direct),
-                                smoothed(v, groups_[g].next_smoothing->gain())});
+                                std::move(v.indirect)});
     }
   }
 
@@ -865,18 +839,12 @@ class RowSolver {
     const double fixed = weighted(result_.caustic.variance);
     const bool photons = fixed > 0.5 * target * target;
     if (photons && !more_photons()) return false;
-    const auto left = [&](const Tally<N>& tally) {
-      std::vector<double> variance =
-          sample_variance(problem_, neighbours_, tally, Samples::Neighbours);
-      for (const SideIndex i : problem_.sides.active)
-        variance[i] *= static_cast<double>(gain_[i]);
-      return variance;
-    };
     const std::vector<Stratum<N>> strata{
         {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
          kShadowRayCost},
-        {&gathered_, left(gathered_), 1.0},
-        {&shot_, left(shot_), kShadowRayCost}};
+        {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours), 1.0},
+        {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
+         kShadowRayCost}};
     auto plans =
         plan_samples(problem_, weights_, exposed_, strata, kMargin * target / result_.error_estimate);
     if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
@@ -941,7 +909,6 @@ class RowSolver {
   std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
   std::vector<double> weights_;  ///< of squared errors, by side
   std::vector<Variances> group_variances_;
-  std::vector<float> gain_;  ///< by side: what smoothing leaves of the variance of its own rays
 
   Stage stage_ = Stage::Light;
   int round_ = 0;

@@ -165,8 +165,8 @@ TEST(Skip, UnlitRoomsCostAFirstRoundOfRays) {
     }
   ASSERT_GT(dark, lit);  // outer sides of walls are dark as well
   // Every ray of a diffuse scene is one segment. A quarter of those that gather makes the field that
-  // all of them read.
-  EXPECT_EQ(one.result.counters[Counter::RaysRow], 16 * dark + (64 + 128 / 4 + 128) * lit);
+  // the rest read.
+  EXPECT_EQ(one.result.counters[Counter::RaysRow], 16 * dark + (64 + 128) * lit);
   EXPECT_LT(one.result.counters[Counter::RaysRow], 0.6 * both.result.counters[Counter::RaysRow]);
 }
 

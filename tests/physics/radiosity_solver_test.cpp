@@ -50,6 +50,56 @@ scene::Scene furnished_room() {
   return maker.take();
 }
 
+// Closed room of one reflectance under a bright ceiling: its surfaces receive Phi / (1 - rho) in all.
+scene::Scene closed_room(float reflectance) {
+  SceneMaker maker;
+  const auto white = maker.material(test::diffuse(reflectance));
+  const auto sky = maker.material(test::emitter(1.0 / kPi, reflectance));
+  maker.room({0, 0, 0}, {3, 2, 2}, {white, white, white, white, white, sky});
+  return maker.take();
+}
+constexpr double kCeiling = 3.0 * 2.0;
+double received(const Solved& s) {
+  double sum = 0.0;
+  for (std::size_t e = 0; e < s.count(); ++e) sum += s.area(e) * s.total(e);
+  return sum;
+}
+
+// Few light samples are noisy, but what they decide (which patches are hot) must not make the mean
+// darker: when those samples counted themselves it was 0.7 % too dark.
+TEST(Rows, DecisionsByLightSamplesDoNotDarkenTheRoom) {
+  constexpr double kReflectance = 0.6;
+  constexpr int kSeeds = 48;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const Solved s(closed_room(kReflectance), {.element_size = 0.25,
+                                               .max_level = 0,
+                                               .direct_samples = 16,
+                                               .seed = static_cast<std::uint64_t>(seed)});
+    const double relative = received(s) * (1.0 - kReflectance) / kCeiling;
+    sum += relative;
+    squares += relative * relative;
+  }
+  const double mean = sum / kSeeds;
+  const double error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+  EXPECT_LT(error, 2e-3);
+  EXPECT_NEAR(mean, 1.0, 4 * error);
+}
+
+// Each round reads a better field than the last; samples that had read an older one must not pull
+// the solution away from it, round by round.
+TEST(Rows, ManyRoundsStayWhereTheyWere) {
+  constexpr double kReflectance = 0.85;
+  SolveOptions options{.element_size = 0.5, .max_level = 0};
+  for (const double error : {0.02, 0.002}) {
+    options.error = error;
+    const Solved s(closed_room(kReflectance), options);
+    EXPECT_EQ(s.result.stopped_by, "error");
+    EXPECT_NEAR(received(s) * (1.0 - kReflectance) / kCeiling, 1.0, 2 * error);
+  }
+}
+
 // The same room by three methods that share little: sampled rows, exact factors with a dense
 // solution, and shooting.
 TEST(Solvers, Agree) {
