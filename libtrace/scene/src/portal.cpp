@@ -14,11 +14,12 @@ namespace {
 
 constexpr int kOpennessRays = 128;
 constexpr int kRoomRays = 512;
-constexpr double kLeastOutside = 0.02;    ///< share of an open half space that a window must see
-constexpr double kMostInside = 0.5;       ///< share inside of a pane, relative to outside
-constexpr double kMostInsideHole = 0.25;  ///< of a hole, which may be a mere gate
-constexpr double kNamed = 2.0;            ///< nothing is asked of what hints name
-constexpr double kRim = 0.9;              ///< share of the border that surfaces rim
+constexpr double kLeastOutside = 0.02;     ///< share of an open half space that a window must see
+constexpr double kLeastOutsideHole = 0.1;  ///< of a hole: under tables there is always some sky
+constexpr double kMostInside = 0.5;        ///< share inside of a pane, relative to outside
+constexpr double kMostInsideHole = 0.25;   ///< of a hole, which may be a mere gate
+constexpr double kNamed = 2.0;             ///< nothing is asked of what hints name
+constexpr double kRim = 0.9;               ///< share of the border that surfaces rim
 constexpr std::size_t kMostFound = 64;
 constexpr std::size_t kMostTriangles = 64;  ///< of a pane; a finer mesh is no plain window
 
@@ -99,7 +100,8 @@ class Finder {
   }
 
   /// \param most_inside  share inside, relative to outside; above 1: it is an opening in any case.
-  void take(const Piece& opening, const std::string& reason, double most_inside) {
+  void take(const Piece& opening, const std::string& reason, double most_inside,
+            double least_outside = kLeastOutside) {
     if (opening.triangles.empty()) return;
     Vec3f inwards = opening.normal();
     double inside = openness(opening, inwards), outside = openness(opening, -inwards);
@@ -107,7 +109,7 @@ class Finder {
       inwards = -inwards;
       std::swap(inside, outside);
     }
-    if (most_inside <= 1.0 && !(outside >= kLeastOutside && inside <= most_inside * outside))
+    if (most_inside <= 1.0 && !(outside >= least_outside && inside <= most_inside * outside))
       return;
     Eigen::AlignedBox3f room;
     rays(opening, inwards, kRoomRays, [&](const Ray& ray) {
@@ -181,7 +183,7 @@ class Finder {
     take(opening,
          hole.wall_missing ? "missing wall between sky and room"
                            : "hole in a wall between sky and room",
-         kMostInsideHole);
+         kMostInsideHole, kLeastOutsideHole);
   }
 
   /// Do surfaces meet the border of a rectangle all round? Just outside of it in its plane, or

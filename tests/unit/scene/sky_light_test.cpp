@@ -296,6 +296,7 @@ TEST(SkyLight, EmittedFluxIsThatOfTheMeanRadiance) {
 struct RoomOptions {
   bool pane = false;
   bool skylight = false;
+  bool table = false;  ///< before the window, on two boards
 };
 
 Scene room(const Environment& environment, const PortalHints& hints, const RoomOptions& o = {},
@@ -318,6 +319,11 @@ Scene room(const Environment& environment, const PortalHints& hints, const RoomO
     wall({3, 3, 2}, {1, 0, 0}, {0, 0, 2});
   } else {
     wall({0, 3, 0}, {5, 0, 0}, {0, 0, 4});
+  }
+  if (o.table) {
+    s.box(black, {0.8, 0.7, 1}, {1.6, 0.74, 3}, false);
+    s.box(black, {0.8, 0, 1}, {1.6, 0.7, 1.04}, false);
+    s.box(black, {0.8, 0, 2.96}, {1.6, 0.7, 3}, false);
   }
   if (o.pane) {
     material::Material glass;
