@@ -4,22 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include <unsupported/Eigen/BVH>
-
 #include "material/material.h"
 #include "polygon.h"
+#include "triangle_tree.h"
 
 namespace atrium::radiosity {
 namespace {
 
 using Box = Eigen::AlignedBox3f;
-using Tree = Eigen::KdBVH<float, 3, std::uint32_t>;
 using Corners = std::array<Vec3d, 3>;
-
-struct Item {
-  scene::ObjectId object;
-  std::uint32_t triangle;
-};
 
 Corners to_double(const std::array<Vec3f, 3>& c) {
   return {c[0].cast<double>(), c[1].cast<double>(), c[2].cast<double>()};
@@ -27,21 +20,10 @@ Corners to_double(const std::array<Vec3f, 3>& c) {
 
 Vec3d unit_normal(const Corners& c) { return (c[1] - c[0]).cross(c[2] - c[0]).normalized(); }
 
-bool passes_light(const material::Material& m) {
+bool stops_light(const material::Material& m) {
   const material::MaterialTraits t = material::traits(m);
-  return t.pane || t.alpha_mask || m.medium != material::Material::Medium::Opaque;
+  return !t.pane && !t.alpha_mask && m.medium == material::Material::Medium::Opaque;
 }
-
-/// Collects the items whose boxes meet a box.
-struct Meeting {
-  Box box;
-  std::vector<std::uint32_t> found;
-  bool intersectVolume(const Box& b) const { return b.intersects(box); }
-  bool intersectObject(std::uint32_t item) {
-    found.push_back(item);
-    return false;  // go on
-  }
-};
 
 /// The part of a line p + s d that lies in a triangle of normal n; empty if first > second.
 std::pair<double, double> inside(const Corners& c, const Vec3d& n, const Vec3d& p, const Vec3d& d,
@@ -65,49 +47,32 @@ std::pair<double, double> inside(const Corners& c, const Vec3d& n, const Vec3d& 
 }  // namespace
 
 struct BarrierFinder::Impl {
-  const scene::Scene* scene;
-  std::vector<Item> items;
-  Tree tree;
+  const scene::Scene& scene;
+  TriangleTree triangles{scene, stops_light};
 };
 
-BarrierFinder::BarrierFinder(const scene::Scene& scene) : impl_(std::make_unique<Impl>()) {
-  impl_->scene = &scene;
-  std::vector<std::uint32_t> numbers;
-  std::vector<Box> boxes;
-  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    const scene::ObjectId id(o);
-    if (passes_light(scene.material_of(id))) continue;
-    for (std::uint32_t t = 0; t < scene.mesh_of(id).triangles.size(); ++t) {
-      Box box;
-      for (const Vec3f& c : scene.corners(id, t)) box.extend(c);
-      numbers.push_back(static_cast<std::uint32_t>(impl_->items.size()));
-      impl_->items.push_back({id, t});
-      boxes.push_back(box);
-    }
-  }
-  impl_->tree.init(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
-}
+BarrierFinder::BarrierFinder(const scene::Scene& scene) : impl_(new Impl{scene}) {}
 
 BarrierFinder::~BarrierFinder() = default;
 
 std::vector<Barrier> BarrierFinder::on(scene::ObjectId object, std::uint32_t triangle,
                                        double reach) const {
   std::vector<Barrier> result;
-  const Corners c = to_double(impl_->scene->corners(object, triangle));
+  const Corners c = to_double(impl_->scene.corners(object, triangle));
   const Vec3d n = unit_normal(c);
   if (!n.allFinite()) return result;
-  Meeting meeting;
-  for (const Vec3d& p : c) meeting.box.extend(p.cast<float>());
-  meeting.box.min().array() -= static_cast<float>(reach);
-  meeting.box.max().array() += static_cast<float>(reach);
-  Eigen::BVIntersect(impl_->tree, meeting);
-  std::sort(meeting.found.begin(), meeting.found.end());
+  Eigen::AlignedBox3f box;
+  for (const Vec3d& p : c) box.extend(p.cast<float>());
+  box.min().array() -= static_cast<float>(reach);
+  box.max().array() += static_cast<float>(reach);
+  std::vector<std::uint32_t> near = impl_->triangles.meeting(box);
+  std::sort(near.begin(), near.end());
   std::vector<Vec3d> part, half;
   const auto lerp = [](const Vec3d& a, const Vec3d& b, double t) { return Vec3d(a + t * (b - a)); };
-  for (const std::uint32_t i : meeting.found) {
-    const Item& item = impl_->items[i];
+  for (const std::uint32_t i : near) {
+    const TriangleTree::Item& item = impl_->triangles.item(i);
     if (item.object == object && item.triangle == triangle) continue;
-    const Corners u = to_double(impl_->scene->corners(item.object, item.triangle));
+    const Corners u = to_double(impl_->scene.corners(item.object, item.triangle));
     const Vec3d m = unit_normal(u);
     if (!m.allFinite() || std::abs(m.dot(n)) > 0.98) continue;
     const auto height = [&](const Vec3d& p) { return (p - c[0]).dot(n); };
