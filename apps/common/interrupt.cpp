@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <thread>
 
 namespace atrium::app {
@@ -20,8 +21,12 @@ std::stop_source watch_interrupts() {
   std::thread([signals, source]() mutable {
     int signal = 0;
     if (sigwait(&signals, &signal) != 0) return;
+    const auto first = std::chrono::steady_clock::now();
     source.request_stop();
-    if (sigwait(&signals, &signal) == 0) ::_exit(130);
+    // timeout(1) and process managers send a request to the process and to its group: that is one.
+    constexpr std::chrono::milliseconds kSameRequest{300};
+    while (sigwait(&signals, &signal) == 0)
+      if (std::chrono::steady_clock::now() - first > kSameRequest) ::_exit(130);
   }).detach();
   return source;
 }

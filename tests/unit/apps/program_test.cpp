@@ -349,6 +349,16 @@ TEST_F(AtriumRun, AnInterruptSavesWhatIsThere) {
   EXPECT_EQ(folder.file_count(), 3);
 }
 
+// One request may arrive twice: timeout(1) signals its child and then the child's group.
+TEST_F(AtriumRun, AnInterruptThatArrivesTwiceIsOne) {
+  const Result r = run_command(
+      folder, std::string(ATRIUM_PROGRAM) +
+                  " render a.obj -o a.pfm --method path --size 200x150 --samples 100000 --quiet & "
+                  "p=$!; sleep 2; kill -TERM $p; sleep 0.05; kill -TERM $p; wait $p");
+  EXPECT_EQ(r.code, 130) << r.err;
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.pfm"), 200u * 150 * 12 + 16);
+}
+
 // The program alone in a folder finds no module: one line that names it, code 1.
 TEST_F(AtriumRun, AMissingModuleIsAClearFailure) {
   std::filesystem::create_directories(folder / "bin");
