@@ -149,7 +149,7 @@ class MeshAdapter {
     problem_ = std::make_unique<Problem<N>>(shading_, surroundings_, mesh_.elements, options_);
     direct_ =
         Tally<N>(problem_->side_count(), problem_->group_count(), problem_->sides.any_coupled);
-    sample_direct(*problem_, Purpose::Decide, DirectLights::All, {},
+    sample_direct(*problem_, Purpose::Decide, DirectLights::All, {}, {},
                   top_up(*problem_, direct_, problem_->sides.active, kPilot), direct_, work_,
                   counters_);
     count_memory(0, 0);
@@ -208,9 +208,9 @@ class MeshAdapter {
 
   std::vector<double> weights(const Light& light) const {
     const double add = ambient(*problem_, light);
-    SideValues<N> irradiance(problem_->side_count());
+    std::vector<double> irradiance(problem_->side_count(), 0.0);
     for (const SideIndex i : problem_->sides.active)
-      irradiance[i] = Spectrum<N>(light.value[i] + static_cast<float>(add));
+      irradiance[i] = static_cast<double>(light.value[i]) + add;
     return error_weights(*problem_, irradiance);
   }
 
@@ -235,7 +235,7 @@ class MeshAdapter {
       fresh.push_back(i);
     }
     for (const auto& sides : {fresh, unknown})
-      sample_direct(*next, Purpose::Decide, DirectLights::All, {},
+      sample_direct(*next, Purpose::Decide, DirectLights::All, {}, {},
                     top_up(*next, tally, sides, kPilot), tally, work_, counters_);
     old.layout.valid = before.known;
     const std::uint64_t old_elements = bytes_of(old) + problem_->bytes();

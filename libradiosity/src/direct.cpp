@@ -11,8 +11,11 @@ using scene::Counters;
 template <int N>
 class SideLight {
  public:
-  SideLight(const Problem<N>& problem, Purpose purpose, DirectLights which)
+  SideLight(const Problem<N>& problem, Purpose purpose, DirectLights which, const SightTable& table,
+            std::uint32_t round)
       : problem_(problem),
+        table_(table),
+        round_(round),
         purpose_(static_cast<std::uint64_t>(purpose)),
         which_(which),
         first_surface_(static_cast<std::uint32_t>(problem.shading.scene().lights.size())),
@@ -21,14 +24,14 @@ class SideLight {
   /// \return  false if the point lies inside a closed body; asked only where `mixed`.
   bool measure(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
                Counters& counters, bool mixed) const {
-    scene::Sampler sampler(replicate_seed(problem_.options.seed, purpose_, replicate),
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, purpose_, replicate, round_),
                            problem_.stream(i), index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
     const float choice = sampler.next_1d();
     const Vec2f u = sampler.next_2d();
     if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return false;
-    const auto s = problem_.shading.lights().sample(p.position, normal, choice, u);
+    const auto s = light_for(i, p.position, normal, choice, u);
     if (!s || !(s->pdf > 0.0f)) return true;
     const bool is_surface = s->source >= first_surface_ && s->source < sky_;
     if (which_ == DirectLights::NoSurfaces && is_surface) return true;
@@ -48,11 +51,42 @@ class SideLight {
       problem_.shading.lights().sky_parts(*s, add);
     else
       add(s->source, s->radiance);
+    sums.end_sample();
     return true;
   }
 
  private:
+  /// As LightSampler::sample, mostly one of the lights that the side's region sees.
+  std::optional<scene::LightSample<N>> light_for(SideIndex i, const Vec3f& p, const Vec3f& normal,
+                                                 float choice, const Vec2f& u) const {
+    const scene::LightSampler<N>& lights = problem_.shading.lights();
+    if (!table_.knows(i)) return lights.sample(p, normal, choice, u);
+    const float by_tree = lights.has_sky() ? 0.5f : 0.2f;
+    const auto chance = [&](std::uint32_t number) {
+      return by_tree * lights.choice_probability(p, normal, number) +
+             (1.0f - by_tree) * table_.probability(i, number);
+    };
+    if (choice < by_tree) {
+      auto s = lights.sample(p, normal, std::min(choice / by_tree, 0x1.fffffep-1f), u);
+      if (!s) return s;
+      if (s->number == scene::LightSample<N>::kFarAway) {
+        s->pdf *= by_tree;
+        return s;
+      }
+      const float tree = lights.choice_probability(p, normal, s->number);
+      if (!(tree > 0.0f)) return std::nullopt;  // rounding
+      s->pdf *= chance(s->number) / tree;
+      return s;
+    }
+    const std::uint32_t number = table_.choose(i, (choice - by_tree) / (1.0f - by_tree));
+    auto s = lights.sample_light(number, p, u);
+    if (s) s->pdf *= chance(number);
+    return s;
+  }
+
   const Problem<N>& problem_;
+  const SightTable& table_;
+  std::uint32_t round_;
   std::uint64_t purpose_;
   DirectLights which_;
   std::uint32_t first_surface_, sky_;  ///< sources that are surfaces; the environment
@@ -62,10 +96,10 @@ class SideLight {
 
 template <int N>
 bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
-                   const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
-                   Tally<N>& tally, Work& work, Counters& counters) {
+                   const SightTable& table, const std::vector<std::uint8_t>& mixed,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
-  const SideLight<N> light(problem, purpose, which);
+  const SideLight<N> light(problem, purpose, which, table, tally.round());
   return draw_one_by_one(
       plan, tally, work, counters,
       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums, Counters& c) {
@@ -90,16 +124,16 @@ template <int N>
 Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which, Work& work,
                          Counters& counters) {
   Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-  sample_direct(problem, Purpose::Count, which, {},
+  sample_direct(problem, Purpose::Count, which, {}, {},
                 top_up(problem, tally, problem.sides.active, samples), tally, work, counters);
   return estimate_of(tally, problem);
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                             \
-  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                   \
-                              const std::vector<std::uint8_t>&, const std::vector<Draw>&, \
-                              Tally<N>&, Work&, Counters&);                               \
-  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                   \
+#define ATRIUM_INSTANTIATE(N)                                                              \
+  template bool sample_direct(const Problem<N>&, Purpose, DirectLights, const SightTable&, \
+                              const std::vector<std::uint8_t>&, const std::vector<Draw>&,  \
+                              Tally<N>&, Work&, Counters&);                                \
+  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                    \
   template Estimate<N> direct_light(const Problem<N>&, int, DirectLights, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

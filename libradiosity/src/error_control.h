@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "smoothing.h"
+#include "regions.h"
 #include "tally.h"
 
 namespace atrium::radiosity {
@@ -11,43 +11,68 @@ namespace atrium::radiosity {
 /// How much a squared error of each side counts: area share over squared irradiance, which has a
 /// floor of 1 % of the mean. Sides that no light reaches do not count: they would only make the
 /// mean look better. The RMS over these is "the error" (docs/radiosity.md, Eq. 8).
-/// \param share  of the area that counts, by side; empty: all.
+/// \param irradiance  lane means by side; 0: unlit. \param share  of the area that counts, by side;
+/// empty: all.
 template <int N>
 [[nodiscard]] std::vector<double> error_weights(const Problem<N>& problem,
-                                                const SideValues<N>& irradiance,
+                                                const std::vector<double>& irradiance,
                                                 const std::vector<float>& share = {});
 
-/// Variance of one sample of each side (lane mean, of all groups or one), pooled as relative
-/// variance: of the neighbours' samples for a decision about a side, which must not depend on the
-/// samples that it stops; of its own and the neighbours' samples for the report, which four
-/// replicates alone would make unsteady.
-enum class Samples { Neighbours, All };
 using GroupChoice = std::optional<std::size_t>;
 inline constexpr GroupChoice kAllGroups = std::nullopt;
+
+/// Variance of each side's mean (lane mean, of all groups or one). The spread of a few replicates
+/// is unsteady, so it is put together with the relative variance of the region's sides.
 template <int N>
-[[nodiscard]] std::vector<double> sample_variance(const Problem<N>& problem,
-                                                  const Neighbours& neighbours,
-                                                  const Tally<N>& tally, Samples whose,
-                                                  GroupChoice group = kAllGroups);
+[[nodiscard]] std::vector<double> mean_variance(const Problem<N>& problem, const Regions& regions,
+                                                const Tally<N>& tally,
+                                                GroupChoice group = kAllGroups);
+
+/// Values of sides that few samples were drawn for, nearer to their region's mean by that: what a
+/// side's samples all missed its region has seen. \param samples  by side.
+template <int N>
+[[nodiscard]] std::vector<double> nearer_to_region(const Problem<N>& problem,
+                                                   const Regions& regions,
+                                                   std::vector<double> values,
+                                                   const std::vector<double>& samples);
+
+/// Variance of one further sample of each side, as far as the samples so far let expect: what low
+/// discrepancy leaves of the spread of a side's samples and, the more the fewer these are, of its
+/// region's. To that comes what all of them may have missed: of a region's n samples the next one
+/// finds something new with probability 1 / (n + 1) at most (Laplace's rule of succession).
+/// \param strongest  value of a sample that finds what is strongest, by region.
+template <int N>
+[[nodiscard]] std::vector<double> expected_variance(const Problem<N>& problem,
+                                                    const Regions& regions, const Tally<N>& tally,
+                                                    const std::vector<double>& strongest);
 
 /// One kind of sampling.
 template <int N>
 struct Stratum {
   const Tally<N>* tally;
-  std::vector<double> variance;  ///< of one sample, Samples::Neighbours
+  std::vector<double> variance;  ///< expected_variance()
   double cost;                   ///< rays per sample
 };
 
-/// What to draw next so that the root of the sum over strata of weight * variance / samples falls
-/// to `share` of what it is, at the least cost (Neyman allocation: samples as the root of weighted
-/// variance over cost); no side gets more than four times what it has. Where only a share of the
-/// points lies outside closed bodies a sample costs as many draws more.
-/// \param exposed  that share, by side.
+/// Effort of a round by Neyman allocation: a side gets effort * root(weight * variance / cost)
+/// samples. The least that brings the sum over strata to `squared_error`, where the round's
+/// estimate joins earlier ones in proportion to their reciprocal variances, but no more than
+/// `most_cost`. \param weights  error_weights(). \param exposed  share of points outside closed
+/// bodies, by side: a sample costs as many draws more. \param so_far  weighted variance of each
+/// stratum.
 template <int N>
-[[nodiscard]] std::vector<std::vector<Draw>> plan_samples(const Problem<N>& problem,
-                                                          const std::vector<double>& weights,
-                                                          const std::vector<float>& exposed,
-                                                          const std::vector<Stratum<N>>& strata,
-                                                          double share);
+[[nodiscard]] double round_effort(const Problem<N>& problem, const std::vector<double>& weights,
+                                  const std::vector<float>& exposed,
+                                  const std::vector<Stratum<N>>& strata,
+                                  const std::vector<double>& so_far, double squared_error,
+                                  double most_cost);
+
+/// The round's samples: no side gets more than eight times the samples that it has had, and none
+/// fewer than one in each replicate. Sides that have had none take no part.
+template <int N>
+[[nodiscard]] std::vector<Draw> plan_round(const Problem<N>& problem,
+                                           const std::vector<double>& weights,
+                                           const std::vector<float>& exposed,
+                                           const Stratum<N>& stratum, double effort);
 
 }  // namespace atrium::radiosity

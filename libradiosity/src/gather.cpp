@@ -12,18 +12,20 @@ template <int N>
 class Gatherer {
  public:
   Gatherer(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
-           const HotPatches<N>& hot)
-      : problem_(problem), field_(field), hot_(hot) {}
+           const HotPatches<N>& hot, const HemisphereGuide& guide, std::uint32_t round)
+      : problem_(problem), field_(field), hot_(hot), guide_(guide), round_(round) {}
 
   /// \return  how many of the rays started outside closed bodies.
   std::uint32_t sample(SideIndex i, int replicate, std::uint32_t first, std::uint32_t count,
                        SideSums<N>& sums, Counters& counters) const {
     constexpr std::uint32_t kMost = HemisphereRays<N>::kMost;
+    const HemisphereGuide::Side towards = guide_.side(i);
     std::uint32_t valid = 0;
     for (std::uint32_t done = 0; done < count; done += kMost) {
       const HemisphereRays<N> rays(
-          problem_, i, replicate_seed(problem_.options.seed, 0x6a74e5U, replicate),
-          problem_.stream(i), first + done, static_cast<int>(std::min(kMost, count - done)));
+          problem_, i, replicate_seed(problem_.options.seed, 0x6a74e5U, replicate, round_),
+          problem_.stream(i), first + done, static_cast<int>(std::min(kMost, count - done)),
+          towards);
       rays.follow_all(
           counters,
           [&](std::size_t k, const Landing<N>& at, const Spectrum<N>& weight) {
@@ -34,7 +36,10 @@ class Gatherer {
                 sums.add(g, replicate, arriving, arriving * rays.body_weight(k));
             }
           },
-          [&](std::size_t, const PathEnd<N>& end) { valid += end.inside_solid ? 0 : 1; });
+          [&](std::size_t, const PathEnd<N>& end) {
+            valid += end.inside_solid ? 0 : 1;
+            sums.end_sample();
+          });
     }
     return valid;
   }
@@ -50,20 +55,24 @@ class Gatherer {
   const Problem<N>& problem_;
   const std::vector<SideValues<N>>& field_;
   const HotPatches<N>& hot_;
+  const HemisphereGuide& guide_;
+  std::uint32_t round_;
 };
 
 template <int N>
 class HotSampler {
  public:
-  HotSampler(const Problem<N>& problem, const HotPatches<N>& hot) : problem_(problem), hot_(hot) {}
+  HotSampler(const Problem<N>& problem, const HotPatches<N>& hot, const SightTable& table,
+             std::uint32_t round)
+      : problem_(problem), hot_(hot), table_(table), round_(round) {}
 
   /// \return  false if the point lies inside a closed body; asked only where `mixed`.
   bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
               Counters& counters, bool mixed) const {
-    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x407caU, replicate),
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x407caU, replicate, round_),
                            problem_.stream(i), index);
     const scene::SurfacePoint from = problem_.points.sample(i / 2, sampler.next_2d());
-    const SideIndex j = hot_.sample(sampler.next_1d());
+    const SideIndex j = patch_for(i, sampler.next_2d());
     const scene::SurfacePoint to = problem_.points.sample(j / 2, sampler.next_2d());
     const Vec3f normal = side_of(i) == scene::Side::Front ? from.ng : Vec3f(-from.ng);
     if (mixed && is_buried(problem_, from, normal, sampler.next_2d(), counters)) return false;
@@ -80,7 +89,8 @@ class HotSampler {
         problem_.shading.transmittance(segment(from, to), counters, Counter::RaysRow);
     if (seen.is_zero()) return true;
     // cos / pi over the density, times the share of this strategy.
-    const float weight = hot_.share_of_chance(j, d, receiver_cosine, sender_cosine);
+    const float weight = hot_.share_of_chance(j, d, receiver_cosine, sender_cosine) /
+                         density_of_group(i, hot_.group_of(j));
     const scene::Interaction<N> at = problem_.shading.interact(to, -wi);
     const Spectrum<N> body =
         problem_.sides.coupled[i / 2] != 0
@@ -93,46 +103,62 @@ class HotSampler {
       const Spectrum<N> arriving = seen * reflectance * hot_.source(j, g) * weight;
       if (!arriving.is_zero()) sums.add(g, replicate, arriving, arriving * body);
     }
+    sums.end_sample();
     return true;
   }
 
  private:
+  static constexpr float kByFlux = 0.3f;  ///< share of patches that flux alone chooses
+
+  /// Mostly of the groups that the side's region sees.
+  SideIndex patch_for(SideIndex i, const Vec2f& u) const {
+    if (!table_.knows(i)) return hot_.sample(u.x());
+    if (u.x() < kByFlux) return hot_.sample(std::min(u.x() / kByFlux, 0x1.fffffep-1f));
+    return hot_.sample_in(table_.choose(i, (u.x() - kByFlux) / (1.0f - kByFlux)), u.y());
+  }
+  /// How much likelier that makes the patches of a group.
+  float density_of_group(SideIndex i, std::uint32_t group) const {
+    if (!table_.knows(i)) return 1.0f;
+    return kByFlux + (1.0f - kByFlux) * table_.probability(i, group) / hot_.share_of(group);
+  }
+
   const Problem<N>& problem_;
   const HotPatches<N>& hot_;
+  const SightTable& table_;
+  std::uint32_t round_;
 };
 
 }  // namespace
 
 template <int N>
 bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
-                   const HotPatches<N>& hot, const std::vector<Draw>& plan, Tally<N>& tally,
-                   Work& work, Counters& counters) {
-  const Gatherer<N> gatherer(problem, field, hot);
-  return draw_samples(plan, tally, work, counters,
-                      [&](SideIndex i, int replicate, std::uint32_t first, std::uint32_t count,
-                          SideSums<N>& sums, Counters& c) {
-                        return gatherer.sample(i, replicate, first, count, sums, c);
-                      });
+                   const HotPatches<N>& hot, const HemisphereGuide& guide,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work, Counters& counters) {
+  const Gatherer<N> gatherer(problem, field, hot, guide, tally.round());
+  return draw_samples(
+      plan, tally, work, counters,
+      [&](SideIndex i, int replicate, std::uint32_t first, std::uint32_t count, SideSums<N>& sums,
+          Counters& c) { return gatherer.sample(i, replicate, first, count, sums, c); });
 }
 
 template <int N>
-bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
+bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot, const SightTable& table,
                 const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                 Tally<N>& tally, Work& work, Counters& counters) {
   if (hot.empty()) return true;
-  const HotSampler<N> sampler(problem, hot);
-  return draw_one_by_one(plan, tally, work, counters,
-                      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
-                          Counters& c) {
-                        return sampler.sample(i, replicate, index, sums, c, mixed[i] != 0);
-                      });
+  const HotSampler<N> sampler(problem, hot, table, tally.round());
+  return draw_one_by_one(
+      plan, tally, work, counters,
+      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums, Counters& c) {
+        return sampler.sample(i, replicate, index, sums, c, mixed[i] != 0);
+      });
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                    \
-  template bool sample_gather(const Problem<N>&, const std::vector<SideValues<N>>&,              \
-                              const HotPatches<N>&, const std::vector<Draw>&, Tally<N>&, Work&,  \
-                              Counters&);                                                        \
-  template bool sample_hot(const Problem<N>&, const HotPatches<N>&,                              \
+#define ATRIUM_INSTANTIATE(N)                                                                     \
+  template bool sample_gather(const Problem<N>&, const std::vector<SideValues<N>>&,               \
+                              const HotPatches<N>&, const HemisphereGuide&,                       \
+                              const std::vector<Draw>&, Tally<N>&, Work&, Counters&);             \
+  template bool sample_hot(const Problem<N>&, const HotPatches<N>&, const SightTable&,            \
                            const std::vector<std::uint8_t>&, const std::vector<Draw>&, Tally<N>&, \
                            Work&, Counters&);
 ATRIUM_INSTANTIATE(1)

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "follow.h"
+#include "guide.h"
 #include "hot_patches.h"
 
 namespace atrium::radiosity {
@@ -15,13 +16,17 @@ class HemisphereRays {
  public:
   static constexpr int kMost = 64;
 
-  /// \param count  in [1, kMost].
+  /// \param count  in [1, kMost]. \param towards  bends the directions; weights make up for it.
   HemisphereRays(const Problem<N>& problem, SideIndex side, std::uint64_t seed,
-                 std::uint32_t stream, std::uint32_t first, int count)
+                 std::uint32_t stream, std::uint32_t first, int count,
+                 const HemisphereGuide::Side& towards = HemisphereGuide::Side(nullptr))
       : problem_(problem), side_(side), seed_(seed), stream_(stream), first_(first), count_(count) {
     std::array<std::array<float, kMost>, 4> u;
     scene::Sampler::fill(seed, stream, first, static_cast<std::size_t>(count),
                          {u[0].data(), u[1].data(), u[2].data(), u[3].data()});
+    weight_.fill(1.0f);
+    if (!towards.uniform())
+      for (std::size_t k = 0; k < size(); ++k) weight_[k] = 1.0f / towards(u[2][k], u[3][k]);
     const ElementPoints& points = problem.points;
     const float sign = side_of(side) == scene::Side::Front ? 1.0f : -1.0f;
     std::uint32_t fan = 0xffffffffU;
@@ -50,7 +55,8 @@ class HemisphereRays {
     return problem_.sides.coupled[side_ / 2] != 0 ? body_weight_[k] : Spectrum<N>::one();
   }
 
-  /// Follows them all; on_diffuse(k, landing, weight) as follow() has it, then on_end(k, path end).
+  /// Follows them all; on_diffuse(k, landing, weight) as follow() has it, made up for bent
+  /// directions, then on_end(k, path end).
   template <class OnDiffuse, class OnEnd>
   void follow_all(scene::Counters& counters, OnDiffuse&& on_diffuse, OnEnd&& on_end) const {
     constexpr auto kKind = scene::Counter::RaysRow;
@@ -58,7 +64,7 @@ class HemisphereRays {
     problem_.shading.closest_hits({rays_.data(), size()}, {hits.data(), size()}, counters, kKind);
     for (std::size_t k = 0; k < size(); ++k) {
       const auto diffuse = [&](const Landing<N>& at, const Spectrum<N>& weight) {
-        on_diffuse(k, at, weight);
+        on_diffuse(k, at, weight * weight_[k]);
       };
       PathEnd<N> end;
       if (!hits[k].found()) {
@@ -85,6 +91,7 @@ class HemisphereRays {
   int count_;
   std::array<scene::Ray, kMost> rays_;
   std::array<float, kMost> cosine_;
+  std::array<float, kMost> weight_;  ///< of a ray: one over its bent density
   std::array<Spectrum<N>, kMost> body_weight_;
 };
 

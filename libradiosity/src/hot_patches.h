@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "problem.h"
+#include "regions.h"
 
 namespace atrium::radiosity {
 
@@ -19,7 +20,7 @@ class HotPatches {
   HotPatches() = default;
   /// \param source  exchange irradiance from lights, by group and side.
   /// Empty if no small set of sides would carry most of the variance.
-  HotPatches(const Problem<N>& problem, std::vector<SideValues<N>> source);
+  HotPatches(const Problem<N>& problem, const Regions& regions, std::vector<SideValues<N>> source);
 
   /// For both directions, see scene/archive.h.
   template <class Archive>
@@ -31,6 +32,9 @@ class HotPatches {
     a(sides_);
     a(until_);
     a(density_);
+    a(group_first_);
+    a(group_of_);
+    a(strength_);
   }
 
   [[nodiscard]] bool is_for(std::size_t sides, std::size_t groups) const {
@@ -38,6 +42,11 @@ class HotPatches {
     bool ok =
         until_.size() == sides_.size() && density_.size() == sides && source_.size() == groups;
     for (const SideIndex i : sides_) ok = ok && i < sides;
+    ok = ok && group_of_.size() == sides && group_first_.size() > 1 && group_first_[0] == 0 &&
+         group_first_.back() == sides_.size();
+    for (std::size_t g = 0; ok && g < group_count(); ++g)
+      ok = group_first_[g] < group_first_[g + 1];
+    for (const std::uint32_t g : group_of_) ok = ok && g < group_count();
     for (const SideValues<N>& s : source_) ok = ok && s.size() == sides;
     return ok;
   }
@@ -56,6 +65,18 @@ class HotPatches {
   /// Density [1/m^2] with which sample() finds points on a side; 0 for sides that are not hot.
   [[nodiscard]] float density(SideIndex i) const { return density_[i]; }
   [[nodiscard]] SideIndex sample(float u) const;
+  /// Groups of patches close together, at most kMostGroups.
+  static constexpr std::size_t kMostGroups = 256;
+  [[nodiscard]] std::size_t group_count() const {
+    return group_first_.empty() ? 0 : group_first_.size() - 1;
+  }
+  [[nodiscard]] std::uint32_t group_of(SideIndex i) const { return group_of_[i]; }
+  /// Probability that sample() finds one of a group.
+  [[nodiscard]] float share_of(std::uint32_t group) const;
+  /// Like sample(), within a group.
+  [[nodiscard]] SideIndex sample_in(std::uint32_t group, float u) const;
+  /// First radiosity, lane mean over the flux.
+  [[nodiscard]] float strength() const { return strength_; }
   [[nodiscard]] std::size_t groups() const { return source_.size(); }
   /// Exchange irradiance of a side straight from the lights: what is shot.
   [[nodiscard]] const Spectrum<N>& source(SideIndex i, std::size_t group) const {
@@ -72,10 +93,15 @@ class HotPatches {
   }
 
  private:
+  void group(const Regions& regions);
+
   std::vector<SideValues<N>> source_;
   std::vector<SideIndex> sides_;
-  std::vector<double> until_;   ///< cumulated share
-  std::vector<float> density_;  ///< by side
+  std::vector<double> until_;               ///< cumulated share
+  std::vector<float> density_;              ///< by side
+  std::vector<std::uint32_t> group_first_;  ///< into sides_, by group; group_count() + 1
+  std::vector<std::uint32_t> group_of_;     ///< by side; 0 for sides that are not hot
+  float strength_ = 0.0f;
 };
 
 }  // namespace atrium::radiosity

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "guide.h"
 #include "hot_patches.h"
 #include "problem.h"
 #include "rows.h"
+#include "sight_table.h"
 #include "tally.h"
 
 namespace atrium::radiosity {
@@ -28,13 +30,15 @@ template <int N>
 enum class Purpose : std::uint64_t { Decide = 0x9d17ec7U, Count = 0xd17ec7U };
 
 /// Light that arrives straight or through panes: draws the samples of `plan` into the tally.
-/// \param which  lights that take part. \param mixed  by side: may a part of it lie inside a closed
+/// \param which  lights that take part. \param table  of lights that are seen, for their choice;
+/// may be empty. \param mixed  by side: may a part of it lie inside a closed
 /// body? Points there count for nothing. Empty: no side is.
 enum class DirectLights { All, NoSurfaces };
 template <int N>
 bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
-                   const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
-                   Tally<N>& tally, Work& work, scene::Counters& counters);
+                   const SightTable& table, const std::vector<std::uint8_t>& mixed,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
+                   scene::Counters& counters);
 /// The same for solvers that need one estimate of all groups, `samples` for every active side.
 template <int N>
 [[nodiscard]] Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which,
@@ -71,15 +75,17 @@ void smooth_photons(const Problem<N>& problem, const std::vector<std::uint32_t>&
 
 /// One bounce against a known field with fresh hemisphere rays.
 /// \param field  exchange irradiance by group, all light. \param hot  their own light only with
-/// the balance heuristic's share, see sample_hot.
+/// the balance heuristic's share, see sample_hot. \param guide  where the rays go.
 template <int N>
 bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
-                   const HotPatches<N>& hot, const std::vector<Draw>& plan, Tally<N>& tally,
-                   Work& work, scene::Counters& counters);
+                   const HotPatches<N>& hot, const HemisphereGuide& guide,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
+                   scene::Counters& counters);
 
-/// The rest of the light of hot patches: points on them chosen by flux.
+/// The rest of the light of hot patches: points on them chosen by flux,
+/// mostly those that a side's region sees.
 template <int N>
-bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot,
+bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot, const SightTable& table,
                 const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                 Tally<N>& tally, Work& work, scene::Counters& counters);
 

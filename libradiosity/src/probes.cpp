@@ -321,7 +321,7 @@ ProbeTracer<N>::ProbeTracer(const Problem<N>& problem, const SurfaceField& field
     direct[i] = value_of<N>(
         problem.sides.coupled[i / 2] != 0 ? field.body_irradiance.direct : field.irradiance.direct,
         i);
-  hot_ = HotPatches<N>(problem, {std::move(direct)});
+  hot_ = HotPatches<N>(problem, Regions(problem), {std::move(direct)});
 
   if (field.irradiance.caustic.empty()) return;
   std::size_t distant = 0;

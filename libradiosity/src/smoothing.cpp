@@ -44,6 +44,25 @@ SideValues<N> Smoothing<N>::operator()(const SideValues<N>& values) const {
   return result;
 }
 
+template <int N>
+std::vector<double> Smoothing<N>::variance(const std::vector<double>& of_values, double share,
+                                           double rest) const {
+  std::vector<double> result(of_values.size(), 0.0);
+  std::size_t at = 0;
+  for (const SideIndex i : problem_->sides.active) {
+    double given = 0.0;
+    double others = 0.0;
+    neighbours_->visit(i, [&](SideIndex j) {
+      const auto w = static_cast<double>(weight_[at++]);
+      given += w;
+      others += w * w * of_values[j];
+    });
+    const double own = share * (1.0 - given) + rest;
+    result[i] = own * own * of_values[i] + share * share * others;
+  }
+  return result;
+}
+
 #define ATRIUM_INSTANTIATE(N) template class Smoothing<N>;
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -38,6 +38,10 @@ class Smoothing {
   [[nodiscard]] SideValues<N> operator()(const SideValues<N>& values) const;
   [[nodiscard]] const std::vector<float>& weights() const { return weight_; }
 
+  /// Variance of share * smoothed + rest * own, for independent values of these variances.
+  [[nodiscard]] std::vector<double> variance(const std::vector<double>& of_values, double share,
+                                             double rest) const;
+
  private:
   const Problem<N>* problem_;
   const Neighbours* neighbours_;

@@ -1,5 +1,6 @@
 #include "error_control.h"
 #include "scene/archive.h"
+#include "smoothing.h"
 #include "solvers.h"
 #include "view_importance.h"
 
@@ -15,10 +16,9 @@ constexpr int kPilot = 16;  ///< samples of each kind before anything is decided
 template <int N>
 struct GroupLight {
   Irradiance<N> direct, caustic, indirect;
-  std::vector<float> variance;  ///< of their sum, sampling of this group only
-  SideValues<N> source;         ///< exchange irradiance from lights
-  SideValues<N> bounced;        ///< exchange irradiance of the rows' solution, later a better one
-  bool refined = false;         ///< is it better?
+  SideValues<N> source;   ///< exchange irradiance from lights
+  SideValues<N> bounced;  ///< exchange irradiance of the rows' solution, later a better one
+  bool refined = false;   ///< is it better?
   SideValues<N> solved_source, solved_shot;  ///< that `bounced` answers to
   SideValues<N> seen;  ///< bounced, smoothed: what fresh rays read beside the source
   SideValues<N> read;  ///< what the fresh rays so far have read, or as if they had
@@ -45,7 +45,16 @@ std::vector<Draw> missing(const std::vector<Goal>& goals, const Tally<N>& tally)
 }
 
 /// What is being done. A stage that was interrupted is taken up again from what was drawn.
-enum class Stage : std::uint8_t { Light, Rows, FirstGather, Gather, RoundLight, RoundGather };
+enum class Stage : std::uint8_t {
+  Light,
+  Rows,
+  FirstGather,
+  Gather,
+  RoundLight,
+  RoundSolve,
+  RoundGather,
+  RoundDone
+};
 
 /// Solves by rows, in stages. An interrupt leaves the state in which a later solver gets to the
 /// same bits: every decision depends on samples that were complete when it was made, or is
@@ -59,6 +68,7 @@ class RowSolver {
         counters_(counters),
         result_(problem),
         neighbours_(problem.elements.layout),
+        regions_(problem),
         groups_(problem.group_count()),
         direct_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
         shot_(problem.side_count(), groups_.size(), problem.sides.any_coupled),
@@ -95,6 +105,7 @@ class RowSolver {
     if (same_light) return;
     forget_reflected();
     solve_bounces();
+    guide_rays();
     stage_ = Stage::FirstGather;
   }
 
@@ -103,6 +114,8 @@ class RowSolver {
                         direct_.bytes() + shot_.bytes() + gathered_.bytes());
     if (stage_ == Stage::Light) {
       work_.begin("direct light", 0.15);
+      if (sight_of_lights_.empty())
+        sight_of_lights_ = radiosity::sight_of_lights(problem_, regions_, counters_);
       draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
       work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
       photons_ = trace_photons(problem_, work_, counters_);
@@ -137,11 +150,11 @@ class RowSolver {
     draw_direct(top_up(problem_, direct_, sides, samples));
   }
   void draw_direct(const std::vector<Draw>& plan) {
-    sample_direct(problem_, Purpose::Count, DirectLights::All, mixed_, plan, direct_, work_,
-                  counters_);
+    sample_direct(problem_, Purpose::Count, DirectLights::All, sight_of_lights_, mixed_, plan,
+                  direct_, work_, counters_);
   }
   void draw_hot(const std::vector<Draw>& plan) {
-    sample_hot(problem_, hot_, mixed_, plan, shot_, work_, counters_);
+    sample_hot(problem_, hot_, sight_of_hot_, mixed_, plan, shot_, work_, counters_);
   }
 
   void draw_gather(const std::vector<Draw>& plan) {
@@ -152,7 +165,7 @@ class RowSolver {
       for (const SideIndex i : problem_.sides.active) field.back()[i] += g.seen[i];
       bring_up_to_date(n, field.back());
     }
-    sample_gather(problem_, field, hot_, plan, gathered_, work_, counters_);
+    sample_gather(problem_, field, hot_, ray_guide_, plan, gathered_, work_, counters_);
   }
 
   /// The samples so far have read another field: the rows say what the difference makes. So no
@@ -236,10 +249,15 @@ class RowSolver {
     a(hot_chosen_);
     a(hot_light_known_);
     hot_.archive(a);
+    sight_of_lights_.archive(a);
+    sight_of_hot_.archive(a);
+    ray_guide_.archive(a);
     a(hot_reflectance_);
     a(exposed_);
     a(mixed_);
     a(result_.valid);
+    a(weights_);
+    a(before_);
     photons_.caustic.resize(groups_.size());
     for (Estimate<N>& e : photons_.caustic) {
       a(e.irradiance.plain);
@@ -295,13 +313,17 @@ class RowSolver {
   [[nodiscard]] bool consistent() const {
     const std::size_t n = problem_.side_count();
     const bool body = problem_.sides.any_coupled;
-    bool ok = stage_ <= Stage::RoundGather && direct_.is_for(n, groups_.size(), body) &&
+    bool ok = stage_ <= Stage::RoundDone && direct_.is_for(n, groups_.size(), body) &&
               shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
-              exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n;
+              exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n &&
+              (weights_.empty() || weights_.size() == n) &&
+              (before_.empty() || before_.size() == n);
     const auto in_range = [n](SideIndex i) { return i < n; };
     for (const auto* goals : {&direct_goals_, &shot_goals_, &gather_goals_})
       for (const Goal& g : *goals) ok = ok && in_range(g.side);
-    ok = ok && hot_.is_for(n, groups_.size());
+    ok = ok && hot_.is_for(n, groups_.size()) &&
+         sight_of_lights_.is_for(n, problem_.shading.lights().finite_count()) &&
+         sight_of_hot_.is_for(n, hot_.group_count()) && ray_guide_.is_for(n);
     if (!ok || stage_ <= Stage::Rows) return ok;
     ok = traced_.size() == problem_.sides.active.size();
     for (const Estimate<N>& e : photons_.caustic)
@@ -345,6 +367,7 @@ class RowSolver {
     };
     if (hot_reflectance_ != hot_reflectance()) shot_ = empty();
     gathered_ = empty();
+    ray_guide_ = {};
     for (GroupLight<N>& g : groups_) g = GroupLight<N>();
     if (stage_ > Stage::Rows) take_direct();
     round_ = 0;
@@ -374,7 +397,10 @@ class RowSolver {
                     importance_));
     solve_bounces();
     (void)paused(Stage::Rows);
-    if (first == all) return;
+    if (first == all) {
+      guide_rays();
+      return;
+    }
     work_.begin("rows", 0.6);
     for (int from = first, to = 2 * first; from < all; from = to, to *= 2) {
       to = std::min(to, all);
@@ -391,7 +417,18 @@ class RowSolver {
       rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
     }
     solve_bounces();
+    guide_rays();
     (void)paused(Stage::Rows);
+  }
+
+  /// From now on rays go where the rows and the best field so far say that light comes from.
+  void guide_rays() {
+    std::vector<float> light(problem_.side_count(), 0.0f);
+    for (const GroupLight<N>& g : groups_) {
+      const SideValues<N> b = radiosity(g);
+      for (const SideIndex i : problem_.sides.active) light[i] += b[i].mean();
+    }
+    ray_guide_ = HemisphereGuide(problem_, regions_, rows_, light);
   }
 
   [[nodiscard]] bool memory_holds(const std::vector<std::uint8_t>& wanted, int rays) const {
@@ -404,7 +441,7 @@ class RowSolver {
   void choose_hot() {
     constexpr int kFew = 8;
     Tally<N> pilot(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
-    if (!sample_direct(problem_, Purpose::Decide, DirectLights::All, {},
+    if (!sample_direct(problem_, Purpose::Decide, DirectLights::All, {}, {},
                        top_up(problem_, pilot, problem_.sides.active, kFew), pilot, work_,
                        counters_)) {
       (void)paused(Stage::Rows);
@@ -418,7 +455,9 @@ class RowSolver {
             (problem_.sides.coupled[i / 2] != 0 ? pilot.mean_body(i, g) : pilot.mean(i, g)) +
             exchange(problem_, groups_[g].caustic, i);
     }
-    hot_ = HotPatches<N>(problem_, std::move(source));
+    hot_ = HotPatches<N>(problem_, regions_, std::move(source));
+    sight_of_hot_ = {};
+    if (!hot_.empty()) sight_of_hot_ = radiosity::sight_of_hot(problem_, regions_, hot_, counters_);
     hot_chosen_ = true;
   }
 
@@ -595,16 +634,49 @@ class RowSolver {
   /// that changes is propagated through the rows once more, as a smooth field again.
   void assemble() {
     iterations_before_assembly_ = result_.iteration.iterations;
+    weigh_rows();
+    result_smoothing_.reset();
     for (std::size_t g = 0; g < groups_.size(); ++g) pool(g);
     estimate_variance();
     for (std::size_t g = 0; g < groups_.size(); ++g) propagate(g);
     sum_groups();
-    estimate_error();
+    const SideValues<N> found = total_irradiance();
+    if (!before_.empty()) {
+      smooth_result();
+      sum_groups();
+    }
+    estimate_error(found);
+    found_ = found;
   }
 
   [[nodiscard]] std::vector<double> indirect_variances(std::size_t group) const {
     const std::vector<float>& v = group_variances_[group].indirect;
     return {v.begin(), v.end()};
+  }
+
+  /// One share of fresh rays for all sides, by reciprocal variances: shares by their numbers would
+  /// depend on what earlier rays found.
+  void weigh_rows() {
+    // Of the first round before there is a result.
+    const std::vector<double> weights =
+        direct_.round() > 0 ? weights_ : error_weights(problem_, field_now(), counting_share());
+    double rows = 0.0;
+    double fresh = 0.0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const SideIndex i = problem_.sides.active[k];
+      if (gathered_.valid(i) == 0) continue;
+      rows += weights[i] * row_variance(k, kAllGroups);
+      fresh += weights[i] * gathered_.variance(i);
+    }
+    fresh_share_ = rows + fresh > 0.0 ? static_cast<float>(rows / (rows + fresh)) : 1.0f;
+  }
+  /// Irradiance by the field that rays read (lane mean).
+  [[nodiscard]] std::vector<double> field_now() const {
+    std::vector<double> irradiance(problem_.side_count(), 0.0);
+    for (const GroupLight<N>& g : groups_)
+      for (const SideIndex i : problem_.sides.active)
+        irradiance[i] += static_cast<double>((g.source[i] + g.bounced[i]).mean());
+    return irradiance;
   }
 
   void pool(std::size_t group) {
@@ -640,13 +712,7 @@ class RowSolver {
     }
   }
 
-  /// Share of the fresh rays in the estimate of row k.
-  [[nodiscard]] float fresh_share(std::size_t k) const {
-    const float fresh = static_cast<float>(gathered_.valid(problem_.sides.active[k]));
-    return fresh > 0.0f ? fresh / (static_cast<float>(rows_.rays[k]) + fresh) : 0.0f;
-  }
-
-  /// The pooled estimate of side k.
+  /// The pooled estimate of side k: that of the row and that of fresh rays.
   void pool(std::size_t k, std::size_t group, const SideValues<N>& b) {
     const SideIndex i = problem_.sides.active[k];
     GroupLight<N>& g = groups_[group];
@@ -661,67 +727,109 @@ class RowSolver {
     g.indirect.plain[i] = estimate(false);
     if (problem_.sides.coupled[i / 2] != 0) g.indirect.body[i] = estimate(true);
   }
+  /// Share of fresh rays in the pooled estimate: one for all sides, as the shares of rounds are.
+  [[nodiscard]] float fresh_share(std::size_t k) const {
+    return gathered_.valid(problem_.sides.active[k]) > 0 ? fresh_share_ : 0.0f;
+  }
 
   void sum_groups() {
     const auto sum = [&](Irradiance<N> GroupLight<N>::*part, Estimate<N>& into) {
-      into.irradiance = groups_[0].*part;
-      for (std::size_t g = 1; g < groups_.size(); ++g)
+      into.irradiance = smoothed(groups_[0].*part);
+      for (std::size_t g = 1; g < groups_.size(); ++g) {
+        const Irradiance<N> more = smoothed(groups_[g].*part);
         for (const SideIndex i : problem_.sides.active) {
-          into.irradiance.plain[i] += (groups_[g].*part).plain[i];
-          if (problem_.sides.any_coupled) into.irradiance.body[i] += (groups_[g].*part).body[i];
+          into.irradiance.plain[i] += more.plain[i];
+          if (problem_.sides.any_coupled) into.irradiance.body[i] += more.body[i];
         }
+      }
     };
     sum(&GroupLight<N>::direct, result_.direct);
     sum(&GroupLight<N>::caustic, result_.caustic);
     sum(&GroupLight<N>::indirect, result_.indirect);
   }
 
+  [[nodiscard]] SideValues<N> total_irradiance() const {
+    SideValues<N> total(problem_.side_count());
+    for (const SideIndex i : problem_.sides.active) total[i] = total_plain(result_, i);
+    return total;
+  }
+  /// What is no more than noise between neighbours is shared among them. One smoothing for all
+  /// parts and groups, so that they still add up; what the rounds before the last one found says
+  /// how much.
+  void smooth_result() {
+    const Variances v = variances(kAllGroups);
+    std::vector<double> variance(problem_.side_count(), 0.0);
+    for (const SideIndex i : problem_.sides.active)
+      variance[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.indirect[i]) +
+                    static_cast<double>(v.caustic[i]);
+    result_smoothing_.emplace(problem_, neighbours_, before_, variance);
+  }
+  [[nodiscard]] Irradiance<N> smoothed(const Irradiance<N>& e) const {
+    if (!result_smoothing_) return e;
+    Irradiance<N> result = e;
+    result.plain = (*result_smoothing_)(e.plain);
+    if (!e.body.empty()) result.body = (*result_smoothing_)(e.body);
+    return result;
+  }
+
   struct Variances {
     std::vector<float> direct, caustic, indirect;  ///< by side
+    std::vector<float> rest;  ///< what is in these beside the side's own samples
   };
 
   /// Variances of the means of one group, or of the sum of all.
   [[nodiscard]] Variances variances(GroupChoice group) const {
     const auto of = [&](const Tally<N>& tally) {
-      return sample_variance(problem_, neighbours_, tally, Samples::All, group);
+      return mean_variance(problem_, regions_, tally, group);
     };
     const std::vector<double> direct = of(direct_);
     const std::vector<double> fresh = of(gathered_);
     const std::vector<double> shot = of(shot_);
     const std::vector<float> none(problem_.side_count(), 0.0f);
-    Variances v{none, none, none};
+    Variances v{none, none, none, none};
     std::vector<double> total(problem_.side_count(), 0.0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
-      const float exposed = exposed_[i] > 0.0f ? 1.0f / exposed_[i] : 0.0f;
-      const double n = direct_.valid(i);
-      v.direct[i] = static_cast<float>(n > 0.0 ? direct[i] / n : 0.0);
-      v.caustic[i] = exposed * exposed * caustic_variance(i, group);
-      const double shots = shot_.valid(i);
-      v.indirect[i] = static_cast<float>(indirect_variance(k, fresh[i], group) +
-                                         (shots > 0.0 ? shot[i] / shots : 0.0));
+      v.direct[i] = static_cast<float>(direct[i]);
+      v.caustic[i] = caustic_variance(i, group);
+      const double share = fresh_share(k);
+      const double row = std::pow(1.0 - share, 2) * row_variance(k, group);
+      v.indirect[i] = static_cast<float>(row + share * share * fresh[i] + shot[i]);
+      v.rest[i] = v.caustic[i] + static_cast<float>(row);
       total[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.caustic[i]) +
                  static_cast<double>(v.indirect[i]);
     }
+    const std::vector<double> passed_on = passed_on_variance(total, group);
+    for (const SideIndex i : problem_.sides.active) {
+      v.indirect[i] += static_cast<float>(passed_on[i]);
+      v.rest[i] += static_cast<float>(passed_on[i]);
+    }
+    return v;
+  }
+
+  /// What errors of other sides' light make of the variance of each: the common one of hot patches,
+  /// and those of what a side sees, as far as they do not average out.
+  [[nodiscard]] std::vector<double> passed_on_variance(const std::vector<double>& total,
+                                                       GroupChoice group) const {
+    std::vector<double> result(problem_.side_count(), 0.0);
     const double common = hot_flux_variance(group);
     if (common > 0.0)
       for (const SideIndex i : problem_.sides.active) {
         double first = 0.0;
         for (std::size_t g = first_of(group); g < end_of(group); ++g)
           first += static_cast<double>(shot_.mean(i, g).mean());
-        v.indirect[i] += static_cast<float>(common * first * first);
+        result[i] = common * first * first;
       }
-    // The errors of what a side sees reach it too, as far as they do not average out.
     std::vector<double> leaving_variance(problem_.side_count(), 0.0);
     for (const SideIndex i : problem_.sides.active) {
       const double rho = static_cast<double>(problem_.sides.reflectance[i].mean());
       const double tau = static_cast<double>(problem_.sides.transmittance[i].mean());
-      leaving_variance[i] = rho * rho * total[i] + tau * tau * total[i ^ 1U];
+      leaving_variance[i] =
+          rho * rho * (total[i] + result[i]) + tau * tau * (total[i ^ 1U] + result[i ^ 1U]);
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      v.indirect[problem_.sides.active[k]] +=
-          static_cast<float>(rows_.apply_squared(k, leaving_variance));
-    return v;
+      result[problem_.sides.active[k]] += rows_.apply_squared(k, leaving_variance);
+    return result;
   }
   [[nodiscard]] static std::size_t first_of(GroupChoice group) { return group.value_or(0); }
   [[nodiscard]] std::size_t end_of(GroupChoice group) const {
@@ -733,17 +841,70 @@ class RowSolver {
     for (std::size_t g = 0; g < groups_.size(); ++g) group_variances_.push_back(variances(g));
   }
 
-  void estimate_error() {
+  /// \param found  total irradiance before it was smoothed.
+  void estimate_error(const SideValues<N>& found) {
     const Variances v = groups_.size() == 1 ? group_variances_[0] : variances(kAllGroups);
     result_.indirect.variance = v.indirect;
     result_.direct.variance = v.direct;
     result_.caustic.variance = v.caustic;
-    SideValues<N> irradiance(problem_.side_count());
-    for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    weights_ = error_weights(problem_, irradiance, counting_share());
-    result_.error_estimate =
-        std::sqrt(weighted(result_.direct.variance) + weighted(result_.caustic.variance) +
-                  weighted(result_.indirect.variance));
+    if (direct_.round() == 0) weights_ = weights_now();
+    raw_error_ = std::sqrt(weighted(raw_variance(v)));
+    result_.error_estimate = raw_error_;
+    if (result_smoothing_) state_smoothed_error(found, v);
+  }
+
+  /// Variance of each side's total by its own samples; Eq. 8 takes it with the weights of before
+  /// the last round, which do not know what that found: with its own a side whose samples all
+  /// missed the light would look certain.
+  [[nodiscard]] std::vector<double> raw_variance(const Variances& v) const {
+    std::vector<double> result(problem_.side_count(), 0.0);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const SideIndex i = problem_.sides.active[k];
+      const double share = fresh_share(k);
+      result[i] = static_cast<double>(v.rest[i]) + direct_.variance(i) + shot_.variance(i) +
+                  share * share * gathered_.variance(i);
+    }
+    return result;
+  }
+
+  /// The last round knows nothing of what smooths, so its own mean C tells the error of the
+  /// smoothed mean: the square of their difference is that of the systematic error (with what
+  /// earlier rounds left) and the variance that C has in it.
+  void state_smoothed_error(const SideValues<N>& found, const Variances& v) {
+    const auto fresh = static_cast<double>(fresh_share_);
+    const std::array<std::pair<const Tally<N>*, double>, 3> parts{
+        {{&direct_, 1.0}, {&shot_, 1.0}, {&gathered_, fresh}}};
+    std::vector<double> difference(problem_.side_count(), 0.0);
+    for (const SideIndex i : problem_.sides.active) {
+      double last = static_cast<double>(found[i].mean());
+      for (const auto& [tally, part] : parts) {
+        double all = 0.0;
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+          all += static_cast<double>(tally->mean(i, g).mean());
+        last += part * (tally->last_mean(i) - all);
+      }
+      difference[i] = static_cast<double>(total_plain(result_, i).mean()) - last;
+    }
+    double sampled = 0.0;
+    double systematic = 0.0;
+    for (const SideIndex i : problem_.sides.active)
+      systematic += weights_[i] * difference[i] * difference[i];
+    for (const auto& [tally, part] : parts) {
+      std::vector<double> own(problem_.side_count(), 0.0);
+      for (const SideIndex i : problem_.sides.active) own[i] = tally->last_variance(i);
+      const double share = part * tally->last_share();
+      sampled += weighted(result_smoothing_->variance(own, share, 0.0));
+      systematic -= weighted(result_smoothing_->variance(own, share, -part));
+    }
+    result_.error_estimate = std::sqrt(sampled + std::max(0.0, systematic) + weighted(v.rest));
+  }
+
+  /// From the irradiance so far.
+  [[nodiscard]] std::vector<double> weights_now() const {
+    std::vector<double> irradiance(problem_.side_count(), 0.0);
+    for (const SideIndex i : problem_.sides.active)
+      irradiance[i] = static_cast<double>(total_plain(result_, i).mean());
+    return error_weights(problem_, irradiance, counting_share());
   }
 
   /// Share of a side's area that counts: what lies outside closed bodies, by importance.
@@ -760,8 +921,8 @@ class RowSolver {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Variances& v = group_variances_[g];
       for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
-      result_.groups.push_back({std::move(groups_[g].direct), std::move(groups_[g].caustic),
-                                std::move(groups_[g].indirect), std::move(v.direct),
+      result_.groups.push_back({smoothed(groups_[g].direct), smoothed(groups_[g].caustic),
+                                smoothed(groups_[g].indirect), std::move(v.direct),
                                 std::move(v.indirect)});
     }
   }
@@ -773,11 +934,7 @@ class RowSolver {
     return sum;
   }
 
-  /// \param fresh  variance of one fresh ray.
-  [[nodiscard]] double indirect_variance(std::size_t k, double fresh, GroupChoice group) const {
-    const double share = static_cast<double>(fresh_share(k));
-    const double n = gathered_.valid(problem_.sides.active[k]);
-    if (n > 0.0) return share * fresh / n;
+  [[nodiscard]] double row_variance(std::size_t k, GroupChoice group) const {
     double sum = 0.0;
     for (std::size_t g = first_of(group); g < end_of(group); ++g)
       sum += row_variance(k, groups_[g]);
@@ -812,7 +969,8 @@ class RowSolver {
     return std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1.0);
   }
 
-  [[nodiscard]] double weighted(const std::vector<float>& variance) const {
+  template <class T>
+  [[nodiscard]] double weighted(const std::vector<T>& variance) const {
     double sum = 0.0;
     for (const SideIndex i : problem_.sides.active)
       sum += weights_[i] * static_cast<double>(variance[i]);
@@ -830,50 +988,94 @@ class RowSolver {
     result_.error_reached = result_.error_estimate <= problem_.options.error;
   }
 
-  /// Irradiance of each side or the mean of its neighbours', whichever is less. By its own alone a
-  /// side that is too bright by chance would count little and stay so, while one too dark would be
-  /// drawn again: the mean would be too bright.
-  [[nodiscard]] SideValues<N> least_nearby() const {
-    SideValues<N> irradiance(problem_.side_count());
-    for (const SideIndex i : problem_.sides.active) irradiance[i] = total_plain(result_, i);
-    SideValues<N> result = irradiance;
-    for (const SideIndex i : problem_.sides.active) {
-      Spectrum<N> sum;
-      float count = 0.0f;
-      neighbours_.visit(i, [&](SideIndex j) {
-        if (problem_.sides.is_active[j] == 0) return;
-        sum += irradiance[j];
-        count += 1.0f;
-      });
-      if (count > 0.0f && sum.mean() < count * irradiance[i].mean()) result[i] = sum / count;
-    }
-    return result;
-  }
+  static constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
 
   /// Says what the next round has to draw; false if nothing.
   bool plan_round() {
-    constexpr double kShadowRayCost = 0.5;  // of a hemisphere ray, measured
-    constexpr double kMargin = 0.95;        // a last round for little is dear
-    const double target = problem_.options.error;
-    const double fixed = weighted(result_.caustic.variance);
-    const bool photons = fixed > 0.5 * target * target;
-    if (photons && !more_photons()) return false;
-    const std::vector<Stratum<N>> strata{
-        {&direct_, sample_variance(problem_, neighbours_, direct_, Samples::Neighbours),
-         kShadowRayCost},
-        {&gathered_, sample_variance(problem_, neighbours_, gathered_, Samples::Neighbours), 1.0},
-        {&shot_, sample_variance(problem_, neighbours_, shot_, Samples::Neighbours),
-         kShadowRayCost}};
-    const std::vector<double> weights = error_weights(problem_, least_nearby(), counting_share());
-    auto plans = plan_samples(problem_, weights, exposed_, strata,
-                              kMargin * target / result_.error_estimate);
-    if (plans[0].empty() && plans[1].empty() && plans[2].empty() && !photons) return false;
+    const double target = std::pow(kMargin * problem_.options.error, 2);
+    const double caustics = weighted(result_.caustic.variance);
+    if (caustics > 0.5 * target && !more_photons()) return false;
+    for (Tally<N>* tally : {&direct_, &gathered_, &shot_})
+      if (tally->round() == 0) tally->end_round(1.0);
+    weights_ = weights_now();
+    before_ = found_;
+    std::vector<double> lights(regions_.size(), 0.0);
+    std::vector<double> patches(regions_.size(), 0.0);
+    for (std::size_t r = 0; r < lights.size(); ++r) {
+      lights[r] = sight_of_lights_.open(r);
+      patches[r] = sight_of_hot_.open(r);
+    }
+    const std::vector<double> bright(regions_.size(), strongest_radiosity());
+    const auto stratum = [&](const Tally<N>& tally, const std::vector<double>& strongest,
+                             double cost) {
+      return Stratum<N>{&tally, expected_variance(problem_, regions_, tally, strongest), cost};
+    };
+    const std::vector<Stratum<N>> strata{stratum(direct_, lights, kShadowRayCost),
+                                         stratum(gathered_, bright, 1.0),
+                                         stratum(shot_, patches, kShadowRayCost)};
+    // Rows and gathered light are estimates of the same.
+    const double share = static_cast<double>(fresh_share_);
+    const std::vector<double> so_far{weighted(direct_), share * weighted(gathered_),
+                                     weighted(shot_)};
+    double sampled = 0.0;
+    for (const double v : so_far) sampled += v;
+    if (!(sampled > 0.0)) return false;
+    // What errors of other sides' light pass on becomes less with these.
+    const double passed_on = std::max(1.0, (raw_error_ * raw_error_ - caustics) / sampled);
+    const double smoother = std::clamp(
+        result_.error_estimate * result_.error_estimate / (raw_error_ * raw_error_), 0.05, 1.0);
+    const double wanted = std::max((target - caustics) / (passed_on * smoother), sampled / 256.0);
+    const double effort =
+        round_effort(problem_, weights_, exposed_, strata, so_far, wanted, cost_so_far());
+    if (!(effort > 0.0)) return false;
     refine_field();
-    direct_goals_ = goals_of(plans[0], direct_);
-    gather_goals_ = goals_of(plans[1], gathered_);
-    shot_goals_ = goals_of(plans[2], shot_);
+    guide_rays();
+    direct_goals_ =
+        goals_of(radiosity::plan_round(problem_, weights_, exposed_, strata[0], effort), direct_);
+    gather_goals_ =
+        goals_of(radiosity::plan_round(problem_, weights_, exposed_, strata[1], effort), gathered_);
+    shot_goals_ =
+        goals_of(radiosity::plan_round(problem_, weights_, exposed_, strata[2], effort), shot_);
     stage_ = Stage::RoundLight;
     return true;
+  }
+  /// Radiosity of what gathering may come upon (lane mean over the flux), hot patches aside.
+  [[nodiscard]] double strongest_radiosity() const {
+    double flux = 0.0;
+    double squares = 0.0;
+    for (const SideIndex i : problem_.sides.active) {
+      if (hot_.contains(i)) continue;
+      const double b = static_cast<double>(
+          leaving(problem_.sides, i, total_plain(result_, i), total_plain(result_, i ^ 1U)).mean());
+      flux += static_cast<double>(problem_.area(i)) * b;
+      squares += static_cast<double>(problem_.area(i)) * b * b;
+    }
+    return flux > 0.0 ? squares / flux : 0.0;
+  }
+  static constexpr double kMargin = 0.97;  // a last round for little is dear
+
+  /// A round costs no more than all before it: what these found is the base of its plan, and its
+  /// own light is better guided.
+  [[nodiscard]] double cost_so_far() const {
+    double cost = 0.0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const SideIndex i = problem_.sides.active[k];
+      cost +=
+          kShadowRayCost * (direct_.valid(i) + shot_.valid(i)) + gathered_.valid(i) + rows_.rays[k];
+    }
+    return cost;
+  }
+  [[nodiscard]] double weighted(const Tally<N>& tally) const {
+    double sum = 0.0;
+    for (const SideIndex i : problem_.sides.active) sum += weights_[i] * tally.variance(i);
+    return sum;
+  }
+  /// The round joins those before it.
+  void end_round(Tally<N>& tally) const {
+    const double before = weighted(tally);
+    double now = 0.0;
+    for (const SideIndex i : problem_.sides.active) now += weights_[i] * tally.variance_now(i);
+    tally.end_round(before + now > 0.0 ? before / (before + now) : 0.5);
   }
 
   /// Draws what is missing to the round. False if stopped; then the result is that of before.
@@ -883,19 +1085,27 @@ class RowSolver {
       draw_direct(missing(direct_goals_, direct_));
       draw_hot(missing(shot_goals_, shot_));
       if (paused(Stage::RoundLight)) return false;
+      end_round(direct_);
+      end_round(shot_);
+      stage_ = Stage::RoundSolve;
+    }
+    if (stage_ == Stage::RoundSolve) {
       const std::vector<GroupLight<N>> before = groups_;
       take_direct();
       solve_bounces();
       if (work_.stopped()) {
         groups_ = before;
-        return !paused(Stage::RoundLight);
+        return !paused(Stage::RoundSolve);
       }
     }
-    work_.begin("gathering", 0.98);
-    draw_gather(missing(gather_goals_, gathered_));
-    if (paused(Stage::RoundGather)) return false;
+    if (stage_ != Stage::RoundDone) {
+      work_.begin("gathering", 0.98);
+      draw_gather(missing(gather_goals_, gathered_));
+      if (paused(Stage::RoundGather)) return false;
+      end_round(gathered_);
+    }
     assemble();
-    return !paused(Stage::RoundGather);
+    return !paused(Stage::RoundDone);
   }
 
   /// Twice as many photons, all of them new. False if stopped or at the end of their numbers.
@@ -917,6 +1127,7 @@ class RowSolver {
   Counters& counters_;
   Solution<N> result_;
   Neighbours neighbours_;
+  Regions regions_;
   std::vector<GroupLight<N>> groups_;
   Tally<N> direct_;    ///< lights
   Tally<N> shot_;      ///< first light of hot patches
@@ -924,10 +1135,17 @@ class RowSolver {
   Photons<N> photons_;
   Rows<N> rows_;
   HotPatches<N> hot_;
+  SightTable sight_of_lights_, sight_of_hot_;
+  HemisphereGuide ray_guide_;
   std::vector<float> exposed_;       ///< by side: share of its area outside closed bodies
   std::vector<std::uint8_t> mixed_;  ///< by side: only a part of it is outside
   std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
   std::vector<double> weights_;      ///< of squared errors, by side
+  double raw_error_ = 0.0;           ///< before smoothing
+  SideValues<N> before_;             ///< irradiance before the last round, not smoothed
+  SideValues<N> found_;              ///< irradiance, not smoothed
+  std::optional<Smoothing<N>> result_smoothing_;
+  float fresh_share_ = 1.0f;  ///< of gathered light in indirect light
   std::vector<Variances> group_variances_;
 
   Stage stage_ = Stage::Light;

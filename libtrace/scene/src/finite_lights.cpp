@@ -256,14 +256,22 @@ std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3
                                                       float u_choice, const Vec2f& u) const {
   const auto choice = tree_.choose(p, normal, u_choice);
   if (!choice) return std::nullopt;
-  if (choice->light < positional_.size()) {
-    auto s = positional(choice->light, p);
-    if (s) s->pdf = choice->probability;
+  auto s = sample_light(choice->light, p, u);
+  if (s) s->pdf *= choice->probability;
+  return s;
+}
+
+template <int N>
+std::optional<LightSample<N>> FiniteLights<N>::sample_light(std::size_t number, const Vec3f& p,
+                                                            const Vec2f& u) const {
+  if (number < positional_.size()) {
+    auto s = positional(number, p);
+    if (s) s->number = static_cast<std::uint32_t>(number);
     return s;
   }
   LightSample<N> s;
-  s.pdf = choice->probability;
-  const std::uint32_t index = choice->light - static_cast<std::uint32_t>(positional_.size());
+  s.number = static_cast<std::uint32_t>(number);
+  const auto index = static_cast<std::uint32_t>(number - positional_.size());
   const auto place = place_on(triangles_[index], p, u);
   if (!place) return std::nullopt;
   s.wi = place->wi;
@@ -273,7 +281,7 @@ std::optional<LightSample<N>> FiniteLights<N>::sample(const Vec3f& p, const Vec3
   seen.error += 0x1p-20f * place->distance;
   s.end = offset_origin(seen, -place->wi);
   s.radiance = radiance_at(place->point);
-  s.pdf *= place->pdf;
+  s.pdf = place->pdf;
   s.light = static_cast<std::uint32_t>(scene_->lights.size()) + index;
   s.source = light_source(*scene_, triangles_[index].object);
   return s;

@@ -20,6 +20,13 @@ class FiniteLights {
   /// As LightSampler::sample, without the choice of a group in the density.
   [[nodiscard]] std::optional<LightSample<N>> sample(const Vec3f& p, const Vec3f& normal,
                                                      float u_choice, const Vec2f& u) const;
+  /// One light, as LightSampler::sample_light, and the probability that sample() chooses it.
+  [[nodiscard]] std::optional<LightSample<N>> sample_light(std::size_t number, const Vec3f& p,
+                                                           const Vec2f& u) const;
+  [[nodiscard]] float choice_probability(const Vec3f& p, const Vec3f& normal,
+                                         std::size_t number) const {
+    return tree_.probability(p, normal, static_cast<std::uint32_t>(number));
+  }
   /// Density [1/sr] of that for the emissive point that a ray from p hits.
   [[nodiscard]] float pdf(const Vec3f& p, const Vec3f& normal, const SurfacePoint& hit,
                           float distance) const;

@@ -164,6 +164,31 @@ std::optional<LightSample<N>> LightSampler<N>::sample(const Vec3f& p, const Vec3
 }
 
 template <int N>
+std::size_t LightSampler<N>::finite_count() const {
+  return impl_->finite_count;
+}
+
+template <int N>
+std::optional<LightSample<N>> LightSampler<N>::sample_light(std::size_t number, const Vec3f& p,
+                                                            const Vec2f& u) const {
+  return impl_->finite.sample_light(number, p, u);
+}
+
+template <int N>
+float LightSampler<N>::choice_probability(const Vec3f& p, const Vec3f& normal,
+                                          std::size_t number) const {
+  const auto groups = impl_->groups(p, normal);
+  return groups.finite > 0.0f
+             ? impl_->finite.choice_probability(p, normal, number) * groups.finite / groups.sum()
+             : 0.0f;
+}
+
+template <int N>
+bool LightSampler<N>::has_sky() const {
+  return !impl_->sky.empty() || !impl_->sky.points().empty();
+}
+
+template <int N>
 std::span<const EmissiveTriangle> LightSampler<N>::surfaces() const {
   return impl_->finite.surfaces();
 }

@@ -27,6 +27,8 @@ struct LightSample {
   bool dirac = false;        ///< point, spot, directional: cannot be hit by chance
   std::uint32_t light = 0;   ///< of lights at a place: Scene::lights, then emissive triangles
   std::uint32_t source = 0;  ///< number of light_groups.h; of the sky: see LightSampler::sky_parts
+  static constexpr std::uint32_t kFarAway = 0xffffffffU;
+  std::uint32_t number = kFarAway;  ///< of LightSampler::sample_light(); kFarAway: sun and sky
 };
 
 /// A triangle of a surface that emits.
@@ -67,6 +69,17 @@ class LightSampler {
                           float distance) const;
   /// Same for the environment in a direction.
   [[nodiscard]] float pdf_environment(const Vec3f& p, const Vec3f& normal, const Vec3f& wi) const;
+
+  /// One light at a place, lights without extent first, then emissive triangles: number 0 to
+  /// finite_count() - 1. The density is that of the point alone. nullopt: it does not reach p.
+  [[nodiscard]] std::size_t finite_count() const;
+  [[nodiscard]] std::optional<LightSample<N>> sample_light(std::size_t number, const Vec3f& p,
+                                                           const Vec2f& u) const;
+  /// Probability that sample() chooses this light.
+  [[nodiscard]] float choice_probability(const Vec3f& p, const Vec3f& normal,
+                                         std::size_t number) const;
+  /// Is there light from far away?
+  [[nodiscard]] bool has_sky() const;
 
   /// Triangle i is LightSample::light - (number of the scene's lights).
   [[nodiscard]] std::span<const EmissiveTriangle> surfaces() const;
