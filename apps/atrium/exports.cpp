@@ -1,0 +1,203 @@
+#include "exports.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <optional>
+
+#include "material/error.h"
+#include "scene/mesh_io.h"
+#include "scene/output_file.h"
+#include "trace/tone_map.h"
+#include "web_page.h"
+
+#ifdef ATRIUM_WITH_RADIOSITY
+#include "radiosity/bake.h"
+#include "radiosity/export_mesh.h"
+#endif
+
+namespace atrium::app {
+
+namespace {
+
+bool is_glb(const std::string& file) { return scene::file_ending(file) == ".glb"; }
+bool is_page(const std::string& file) { return scene::file_ending(file) == ".html"; }
+
+bool any(const std::vector<std::string>& files, bool (*is)(const std::string&)) {
+  return std::any_of(files.begin(), files.end(), is);
+}
+
+}  // namespace
+
+bool is_export(const std::string& file) {
+  return scene::is_mesh_ending(file) || is_glb(file) || is_page(file);
+}
+
+void check_export(const std::string& file) {
+  if (scene::is_mesh_ending(file) && !scene::mesh_io_available())
+    throw RuntimeFailure(file +
+                         ": mesh files are not part of this build (ATRIUM_WITH_VTK was off)");
+  if (is_page(file) && !web_available())
+    throw RuntimeFailure(file +
+                         ": web pages are not part of this build (ATRIUM_WITH_WEB was off, or npm "
+                         "was missing)");
+}
+
+void check_export_options(const ExportSettings& settings, const std::vector<std::string>& files) {
+  if (settings.ev && !any(files, is_glb) && !any(files, is_page))
+    throw Error("--exposure: there is no .glb or .html output");
+}
+
+#ifdef ATRIUM_WITH_RADIOSITY
+
+namespace {
+
+using scene::BakedModel;
+
+/// Area up to each triangle of the surfaces that carry light, with where they are.
+struct LitTriangles {
+  std::vector<double> area_up_to;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> place;  // primitive, first index
+
+  explicit LitTriangles(const BakedModel& model) {
+    double sum = 0.0;
+    for (std::uint32_t k = 0; k < model.primitives.size(); ++k) {
+      const BakedModel::Primitive& p = model.primitives[k];
+      if (p.radiance.empty()) continue;
+      for (std::uint32_t i = 0; i + 2 < p.indices.size(); i += 3) {
+        const Vec3f a = p.positions[p.indices[i]];
+        sum += 0.5 * static_cast<double>((p.positions[p.indices[i + 1]] - a)
+                                             .cross(p.positions[p.indices[i + 2]] - a)
+                                             .norm());
+        area_up_to.push_back(sum);
+        place.push_back({k, i});
+      }
+    }
+  }
+};
+
+/// Radiance at places uniform by area, as a picture.
+scene::Image sample_radiance(const BakedModel& model) {
+  constexpr std::size_t kSamples = 1 << 16;
+  scene::Image image;
+  image.channels = {"R", "G", "B"};
+  const LitTriangles triangles(model);
+  if (triangles.place.empty()) return image;
+  image.width = static_cast<int>(kSamples);
+  image.height = 1;
+  const double step = triangles.area_up_to.back() / static_cast<double>(kSamples);
+  std::size_t at = 0;
+  for (std::size_t s = 0; s < kSamples; ++s) {
+    const double area = (static_cast<double>(s) + 0.5) * step;
+    while (at + 1 < triangles.place.size() && triangles.area_up_to[at] < area) ++at;
+    const auto [k, first] = triangles.place[at];
+    const BakedModel::Primitive& p = model.primitives[k];
+    Rgb mean;
+    for (std::uint32_t i = 0; i < 3; ++i) mean += p.radiance[p.indices[first + i]] * (1.0f / 3.0f);
+    const std::int32_t texture = model.materials[p.material].texture;
+    if (texture >= 0) mean *= model.textures[static_cast<std::size_t>(texture)].mean_rgb();
+    image.pixels.insert(image.pixels.end(), mean.lane.begin(), mean.lane.end());
+  }
+  return image;
+}
+
+class Writer {
+ public:
+  Writer(Session& session, const ExportSource& source, const ExportSettings& settings)
+      : session_(session),
+        source_(source),
+        scene_(*source.loaded.scene),
+        settings_(settings),
+        elements_(radiosity::elements_of_field(scene_, source.field)) {}
+
+  void write(const std::string& file) {
+    if (scene::is_mesh_ending(file))
+      scene::write_polygon_mesh(mesh(), file);
+    else if (is_glb(file))
+      write_glb(file);
+    else
+      write_page(file);
+    session_.progress.note("wrote " + file);
+  }
+
+ private:
+  const scene::PolygonMesh& mesh() {
+    if (!mesh_) {
+      mesh_ = radiosity::to_polygon_mesh(scene_, elements_, source_.field, source_.loaded.basis,
+                                         source_.groups);
+      mesh_->field_data["version"] = {std::string("atrium ") + ATRIUM_VERSION};
+      mesh_->field_data["command"] = {session_.options().command_line};
+    }
+    return *mesh_;
+  }
+
+  BakedModel bake(const radiosity::BakeOptions& options) {
+    BakedModel model = radiosity::bake(scene_, elements_, source_.field, source_.loaded.basis,
+                                       source_.groups, options);
+    for (const std::string& warning : model.warnings) session_.progress.warning(warning);
+    return model;
+  }
+
+  scene::GlbOptions glb_options(const BakedModel& model) const {
+    scene::GlbOptions o;
+    if (settings_.ev) {
+      o.ev = *settings_.ev;
+    } else {
+      const scene::Image samples = sample_radiance(model);
+      o.ev = samples.pixels.empty() ? 0.0 : trace::automatic_ev(samples);
+    }
+    o.white = trace::white_at(o.ev);
+    o.generator = std::string("atrium ") + ATRIUM_VERSION;
+    return o;
+  }
+
+  void write_glb(const std::string& file) {
+    const BakedModel model = bake({});
+    const scene::GlbOptions options = glb_options(model);
+    scene::GlbStatistics statistics;
+    scene::write_bytes(scene::encode_glb(model, options, &statistics), file);
+    char text[200];
+    std::snprintf(text, sizeof text, "%s: white is %.4g %s (EV %.2f), %.2g %% is brighter",
+                  file.c_str(), options.white,
+                  model.unit == scene::RadianceUnit::Nit ? "cd/m^2" : "W/(sr m^2)", options.ev,
+                  100.0 * statistics.clipped_share);
+    session_.progress.note(text);
+  }
+
+  void write_page(const std::string& file) {
+    const BakedModel model = bake({.group_light = true, .merge_objects = true});
+    scene::GlbOptions options = glb_options(model);
+    options.page = true;
+    scene::write_bytes(web_page(scene::encode_glb(model, options), settings_.title), file);
+  }
+
+  Session& session_;
+  const ExportSource& source_;
+  const scene::Scene& scene_;
+  const ExportSettings& settings_;
+  radiosity::Elements elements_;
+  std::optional<scene::PolygonMesh> mesh_;
+};
+
+}  // namespace
+
+void write_exports(Session& session, const ExportSource& source,
+                   const std::vector<std::string>& files, const ExportSettings& settings) {
+  if (!any(files, is_export)) return;
+  session.clock.enter("write");
+  Writer writer(session, source, settings);
+  for (const std::string& file : files)
+    if (is_export(file)) writer.write(file);
+}
+
+#else
+
+void write_exports(Session&, const ExportSource&, const std::vector<std::string>&,
+                   const ExportSettings&) {
+  throw RuntimeFailure("radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
+}
+
+#endif
+
+}  // namespace atrium::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+
+#include "radiosity/elements.h"
+#include "scene/baked_model.h"
+#include "scene/light_groups.h"
+
+namespace atrium::radiosity {
+
+struct BakeOptions {
+  bool group_light = false;  ///< radiance and illuminance by group at the vertices: for the page
+  /// One primitive for all objects of a look; else one per object and side, with its name.
+  bool merge_objects = false;
+};
+
+/// The solved scene as viewers without light show it: triangles with their radiance.
+///
+/// Each side is a surface of its own, seen from that side only; sides of objects that no light
+/// reaches are left out. Where both sides are there the back lies a little behind the front, for
+/// viewers that see both sides of triangles. Corners have the values of mesh files' points.
+///
+/// What a surface reflects diffusely and emits is its radiance from everywhere; its gloss is not
+/// kept. A colour texture is kept as a picture that multiplies (so is a picture that is emitted;
+/// the other of the two terms is then divided by the picture's mean). Surfaces without elements are
+/// emission (black lamps), black, a metal (mirrors) or glass.
+///
+/// \param groups  of the field, or empty: then it is one group, "all".
+/// \throws std::invalid_argument  as to_polygon_mesh().
+[[nodiscard]] scene::BakedModel bake(const scene::Scene& scene, const Elements& elements,
+                                     const scene::SurfaceField& field,
+                                     const material::SpectralBasis& basis,
+                                     std::span<const scene::GroupField> groups = {},
+                                     const BakeOptions& options = {});
+
+}  // namespace atrium::radiosity
