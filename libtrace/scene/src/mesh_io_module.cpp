@@ -133,6 +133,7 @@ std::string write_with(Data* data, const std::string& file) {
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(1);  // 0.6 of the time of the default for 1 % more bytes
   if (writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError) return {};
   return vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode());
 }
