@@ -55,9 +55,18 @@ namespace {
 
 using scene::BakedModel;
 
-/// Area up to each triangle of the surfaces that carry light, with where they are.
+/// How much a place matters to who looks from the scene's cameras: as the solid angle falls off.
+double weight_of(const Vec3d& place, const std::vector<scene::Camera>& cameras) {
+  if (cameras.empty()) return 1.0;
+  double largest = 0.0;
+  for (const scene::Camera& c : cameras)
+    largest = std::max(largest, 1.0 / (1.0 + (place - c.to_scene.translation()).squaredNorm()));
+  return largest;
+}
+
+/// The triangles that carry light, by area as seen from the cameras.
 struct LitTriangles {
-  std::vector<double> area_up_to;
+  std::vector<double> weight_up_to;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> place;  // primitive, first index
 
   explicit LitTriangles(const BakedModel& model) {
@@ -66,18 +75,20 @@ struct LitTriangles {
       const BakedModel::Primitive& p = model.primitives[k];
       if (p.radiance.empty()) continue;
       for (std::uint32_t i = 0; i + 2 < p.indices.size(); i += 3) {
-        const Vec3f a = p.positions[p.indices[i]];
-        sum += 0.5 * static_cast<double>((p.positions[p.indices[i + 1]] - a)
-                                             .cross(p.positions[p.indices[i + 2]] - a)
-                                             .norm());
-        area_up_to.push_back(sum);
+        const auto corner = [&](std::uint32_t n) {
+          return Vec3d(p.positions[p.indices[i + n]].cast<double>());
+        };
+        const Vec3d a = corner(0);
+        const double area = 0.5 * (corner(1) - a).cross(corner(2) - a).norm();
+        sum += area * weight_of((a + corner(1) + corner(2)) / 3.0, model.cameras);
+        weight_up_to.push_back(sum);
         place.push_back({k, i});
       }
     }
   }
 };
 
-/// Radiance at places uniform by area, as a picture.
+/// Radiance at places all over these, as a picture.
 scene::Image sample_radiance(const BakedModel& model) {
   constexpr std::size_t kSamples = 1 << 16;
   scene::Image image;
@@ -86,11 +97,11 @@ scene::Image sample_radiance(const BakedModel& model) {
   if (triangles.place.empty()) return image;
   image.width = static_cast<int>(kSamples);
   image.height = 1;
-  const double step = triangles.area_up_to.back() / static_cast<double>(kSamples);
+  const double step = triangles.weight_up_to.back() / static_cast<double>(kSamples);
   std::size_t at = 0;
   for (std::size_t s = 0; s < kSamples; ++s) {
-    const double area = (static_cast<double>(s) + 0.5) * step;
-    while (at + 1 < triangles.place.size() && triangles.area_up_to[at] < area) ++at;
+    const double wanted = (static_cast<double>(s) + 0.5) * step;
+    while (at + 1 < triangles.place.size() && triangles.weight_up_to[at] < wanted) ++at;
     const auto [k, first] = triangles.place[at];
     const BakedModel::Primitive& p = model.primitives[k];
     Rgb mean;
