@@ -102,7 +102,7 @@ BakedModel::Primitive PlainBaker<N>::bake(ObjectId object, bool merged) const {
       if (material.texture >= 0) p.uvs.push_back(picture.slot.transform(at.uv));
     }
   if (unlit) set_light(p, object, picture);
-  if (merged) material.name.clear();
+  if (merged) material.name = "plain";
   p.material = looks_.material(material);
   return p;
 }

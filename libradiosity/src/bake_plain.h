@@ -13,7 +13,7 @@ class PlainBaker {
   PlainBaker(const scene::Scene& scene, const material::SpectralBasis& basis,
              const SurfaceReader<N>& surfaces, BakedLooks& looks, std::size_t group_count);
 
-  /// \param merged  looks that do not depend on the object are one material, unnamed.
+  /// \param merged  looks that do not depend on the object are one material, "plain".
   [[nodiscard]] Primitive bake(scene::ObjectId object, bool merged) const;
 
  private:

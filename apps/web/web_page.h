@@ -6,11 +6,9 @@
 
 namespace atrium::app {
 
-/// Is the page to walk through a scene part of this build?
-[[nodiscard]] bool web_available();
-
-/// A page of its own, with everything in it.
+/// A page to walk through a scene, with everything in it: three.js, the script, the scene.
 /// \param glb  scene::encode_glb() with GlbOptions::page. \param title  plain text.
+/// \throws RuntimeFailure  if the scene cannot be packed.
 [[nodiscard]] std::vector<std::uint8_t> web_page(const std::vector<std::uint8_t>& glb,
                                                  const std::string& title);
 
