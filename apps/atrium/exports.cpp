@@ -66,61 +66,83 @@ namespace {
 
 using scene::BakedModel;
 
-/// How much a place matters to who looks from the scene's cameras: as the solid angle falls off.
-double weight_of(const Vec3d& place, const std::vector<scene::Camera>& cameras) {
-  if (cameras.empty()) return 1.0;
-  double largest = 0.0;
-  for (const scene::Camera& c : cameras)
-    largest = std::max(largest, 1.0 / (1.0 + (place - c.to_scene.translation()).squaredNorm()));
-  return largest;
-}
-
-/// The triangles that carry light, by area as seen from the cameras.
-struct LitTriangles {
-  std::vector<double> weight_up_to;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> place;  // primitive, first index
-
-  explicit LitTriangles(const BakedModel& model) {
-    double sum = 0.0;
-    for (std::uint32_t k = 0; k < model.primitives.size(); ++k) {
-      const BakedModel::Primitive& p = model.primitives[k];
-      if (p.radiance.empty()) continue;
-      for (std::uint32_t i = 0; i + 2 < p.indices.size(); i += 3) {
-        const auto corner = [&](std::uint32_t n) {
-          return Vec3d(p.positions[p.indices[i + n]].cast<double>());
-        };
-        const Vec3d a = corner(0);
-        const double area = 0.5 * (corner(1) - a).cross(corner(2) - a).norm();
-        sum += area * weight_of((a + corner(1) + corner(2)) / 3.0, model.cameras);
-        weight_up_to.push_back(sum);
-        place.push_back({k, i});
-      }
-    }
-  }
+/// A triangle that carries light.
+struct LitTriangle {
+  std::uint32_t primitive = 0, first = 0;  ///< into its indices
+  Vec3d centre = Vec3d::Zero();
+  double weight_up_to = 0.0;  ///< of all until this one
 };
 
-/// Radiance at places all over these, as a picture.
-scene::Image sample_radiance(const BakedModel& model) {
-  constexpr std::size_t kSamples = 1 << 16;
+Vec3d eye_of(const BakedModel& model) { return model.cameras.front().to_scene.translation(); }
+
+/// The solid angle from the first camera, of what is near no more than its area; without a camera
+/// the area. \param area  along the normal.
+double weight_of(const Vec3d& centre, const Vec3d& area, const BakedModel& model) {
+  if (model.cameras.empty()) return area.norm();
+  const Vec3d d = eye_of(model) - centre;
+  return std::max(0.0, area.dot(d)) / ((1.0 + d.squaredNorm()) * (1e-6 + d.norm()));
+}
+
+std::vector<LitTriangle> lit_triangles(const BakedModel& model) {
+  std::vector<LitTriangle> list;
+  double sum = 0.0;
+  for (std::uint32_t k = 0; k < model.primitives.size(); ++k) {
+    const BakedModel::Primitive& p = model.primitives[k];
+    if (p.radiance.empty() || p.backdrop) continue;
+    for (std::uint32_t i = 0; i + 2 < p.indices.size(); i += 3) {
+      const auto corner = [&](std::uint32_t n) {
+        return Vec3d(p.positions[p.indices[i + n]].cast<double>());
+      };
+      const Vec3d a = corner(0);
+      LitTriangle t{k, i, (a + corner(1) + corner(2)) / 3.0};
+      sum += weight_of(t.centre, 0.5 * (corner(1) - a).cross(corner(2) - a), model);
+      t.weight_up_to = sum;
+      list.push_back(t);
+    }
+  }
+  return list;
+}
+
+/// Can a triangle be seen from where the first camera stands, through panes too?
+bool visible(const LitTriangle& t, const BakedModel& model, const scene::RayQuery& query) {
+  if (model.cameras.empty()) return true;
+  const Vec3d eye = eye_of(model);
+  const Vec3d d = t.centre - eye;
+  const double length = d.norm();
+  if (!(length > 1e-3)) return true;
+  scene::Counters counters;
+  return !query.occluded({eye.cast<float>(), (d / length).cast<float>(), 0.0f,
+                          static_cast<float>(length * (1.0 - 1e-3))},
+                         counters, scene::Counter::RaysPrimary, scene::kOpaque);
+}
+
+Rgb radiance_of(const LitTriangle& t, const BakedModel& model) {
+  const BakedModel::Primitive& p = model.primitives[t.primitive];
+  Rgb mean;
+  for (std::uint32_t i = 0; i < 3; ++i) mean += p.radiance[p.indices[t.first + i]] * (1.0f / 3.0f);
+  const std::int32_t texture = model.materials[p.material].texture;
+  if (texture >= 0) mean *= model.textures[static_cast<std::size_t>(texture)].mean_rgb();
+  return mean;
+}
+
+/// What the first camera has round it, as a picture; empty if there is no light.
+scene::Image surroundings(const BakedModel& model, const scene::RayQuery& query) {
+  constexpr std::size_t kSamples = 1 << 14;
   scene::Image image;
   image.channels = {"R", "G", "B"};
-  const LitTriangles triangles(model);
-  if (triangles.place.empty()) return image;
-  image.width = static_cast<int>(kSamples);
-  image.height = 1;
-  const double step = triangles.weight_up_to.back() / static_cast<double>(kSamples);
+  const std::vector<LitTriangle> triangles = lit_triangles(model);
+  if (triangles.empty()) return image;
+  const double step = triangles.back().weight_up_to / static_cast<double>(kSamples);
   std::size_t at = 0;
   for (std::size_t s = 0; s < kSamples; ++s) {
     const double wanted = (static_cast<double>(s) + 0.5) * step;
-    while (at + 1 < triangles.place.size() && triangles.weight_up_to[at] < wanted) ++at;
-    const auto [k, first] = triangles.place[at];
-    const BakedModel::Primitive& p = model.primitives[k];
-    Rgb mean;
-    for (std::uint32_t i = 0; i < 3; ++i) mean += p.radiance[p.indices[first + i]] * (1.0f / 3.0f);
-    const std::int32_t texture = model.materials[p.material].texture;
-    if (texture >= 0) mean *= model.textures[static_cast<std::size_t>(texture)].mean_rgb();
-    image.pixels.insert(image.pixels.end(), mean.lane.begin(), mean.lane.end());
+    while (at + 1 < triangles.size() && triangles[at].weight_up_to < wanted) ++at;
+    if (!visible(triangles[at], model, query)) continue;
+    const Rgb radiance = radiance_of(triangles[at], model);
+    image.pixels.insert(image.pixels.end(), radiance.lane.begin(), radiance.lane.end());
   }
+  image.width = static_cast<int>(image.pixels.size() / 3);
+  image.height = image.width > 0 ? 1 : 0;
   return image;
 }
 
@@ -166,7 +188,7 @@ class Writer {
     if (settings_.ev) {
       o.ev = *settings_.ev;
     } else {
-      const scene::Image samples = sample_radiance(model);
+      const scene::Image samples = surroundings(model, *source_.loaded.query);
       o.ev = samples.pixels.empty() ? 0.0 : trace::automatic_ev(samples);
     }
     o.white = trace::white_at(o.ev);
@@ -188,7 +210,7 @@ class Writer {
   }
 
   void write_page(const std::string& file) {
-    const BakedModel model = bake({.group_light = true, .merge_objects = true});
+    const BakedModel model = bake({.group_light = true, .merge_objects = true, .backdrop = true});
     scene::GlbOptions options = glb_options(model);
     options.page = true;
     scene::write_bytes(web_page(scene::encode_glb(model, options), settings_.title), file);

@@ -259,6 +259,12 @@ class Baker {
       Primitive p = plain_.bake(ObjectId(o), options_.merge_objects);
       if (!p.indices.empty()) append(std::move(p), ObjectId(o));
     }
+    if (options_.backdrop && scene_.environment) {
+      const std::vector<std::uint32_t> group = emission_groups(scene_, groups_);
+      const std::uint32_t own = group.empty() ? 0 : group.back();
+      const double factor = groups_.empty() ? 1.0 : groups_[own].factor;
+      model_.primitives.push_back(plain_.bake_sky(factor, own));
+    }
   }
 
   void append(Primitive&& from, ObjectId object) {

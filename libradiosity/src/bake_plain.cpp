@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "scene/light_sampler.h"
 
 namespace atrium::radiosity {
 
@@ -104,6 +107,43 @@ BakedModel::Primitive PlainBaker<N>::bake(ObjectId object, bool merged) const {
   if (unlit) set_light(p, object, picture);
   if (merged) material.name = "plain";
   p.material = looks_.material(material);
+  return p;
+}
+
+template <int N>
+BakedModel::Primitive PlainBaker<N>::bake_sky(double factor, std::uint32_t group) const {
+  constexpr int kRings = 48;
+  constexpr int kSegments = 96;
+  const scene::LightSampler<N> lights(scene_, basis_, {});
+  const auto radius = static_cast<float>(2.0 * scene_.bounds.diagonal().norm() + 1.0);
+  Primitive p;
+  p.name = "sky";
+  p.backdrop = true;
+  BakedModel::Material look;
+  look.name = "plain";
+  p.material = looks_.material(look);
+  p.groups.resize(group_count_);
+  const Vec3f centre = scene_.bounds.center().template cast<float>();
+  for (int i = 0; i <= kRings; ++i)
+    for (int j = 0; j <= kSegments; ++j) {
+      const double theta = std::numbers::pi * i / kRings;
+      const double phi = 2.0 * std::numbers::pi * j / kSegments;
+      const Vec3f d =
+          Vec3d(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi))
+              .template cast<float>();
+      p.positions.push_back(centre + radius * d);
+      const Rgb radiance = basis_.to_rgb<N>(lights.environment(d) * static_cast<float>(factor));
+      p.radiance.push_back(radiance);
+      for (std::size_t g = 0; g < group_count_; ++g)
+        p.groups[g].push_back({g == group ? radiance : Rgb(), 0.0f});
+    }
+  const auto at = [](int i, int j) { return static_cast<std::uint32_t>(i * (kSegments + 1) + j); };
+  for (int i = 0; i < kRings; ++i)
+    for (int j = 0; j < kSegments; ++j) {
+      if (i > 0) p.indices.insert(p.indices.end(), {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      if (i + 1 < kRings)
+        p.indices.insert(p.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+    }
   return p;
 }
 

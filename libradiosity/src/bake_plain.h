@@ -15,6 +15,8 @@ class PlainBaker {
 
   /// \param merged  looks that do not depend on the object are one material, "plain".
   [[nodiscard]] Primitive bake(scene::ObjectId object, bool merged) const;
+  /// A sphere round the scene that shows the environment from inside.
+  [[nodiscard]] Primitive bake_sky(double factor, std::uint32_t group) const;
 
  private:
   void set_light(Primitive& p, scene::ObjectId object, const KeptPicture& picture) const;

@@ -19,7 +19,7 @@ std::vector<std::uint32_t> emission_groups(const Scene& scene,
                    [](const std::string& name, const auto& group) { return name == group.name; });
     if (!same) continue;
     const auto first = found.group.begin() + static_cast<std::ptrdiff_t>(scene.lights.size());
-    return {first, first + static_cast<std::ptrdiff_t>(scene.objects.size())};
+    return {first, first + static_cast<std::ptrdiff_t>(scene.objects.size() + 1)};
   }
   throw std::invalid_argument("export: the light groups are not those of the scene");
 }

@@ -37,7 +37,7 @@ class Viewer {
   async start() {
     Object.assign(this, await buildScene(this.glb, this.light, this.cube.texture));
     const size = this.box.getSize(new THREE.Vector3()).length() || 1;
-    this.camera.far = 4 * size;
+    this.camera.far = 8 * size + 8;
     this.walk = new Walk(this.camera, this.canvas, () => this.redraw());
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener('change', () => this.redraw());

@@ -69,12 +69,13 @@ function cameraOf(node, source) {
   return {name: node.name ?? '', matrix, yfov: source.perspective?.yfov ?? 0.9};
 }
 
-/** {scene, glass, cameras, box}. Metals see `cube`. */
+/** {scene, panes, cameras, box}. Metals see `cube`; the box is without the sky. */
 export async function buildScene(glb, light, cube) {
   const scene = new THREE.Scene();
   scene.background = new THREE.Color(0);
   const panes = [];
   const cameras = [];
+  const box = new THREE.Box3();
   const materials = await Promise.all((glb.json.materials ?? []).map((_, i) => materialOf(glb, i, cube)));
   for (const node of glb.json.nodes) {
     if (node.camera !== undefined) cameras.push(cameraOf(node, glb.json.cameras[node.camera]));
@@ -85,8 +86,9 @@ export async function buildScene(glb, light, cube) {
       mesh.scale.fromArray(node.scale ?? [1, 1, 1]);
       mesh.updateMatrixWorld();
       if (materials[primitive.material].isMeshBasicMaterial) panes.push(mesh);
+      if (node.name !== 'sky') box.expandByObject(mesh);
       scene.add(mesh);
     }
   }
-  return {scene, panes, cameras, box: new THREE.Box3().setFromObject(scene)};
+  return {scene, panes, cameras, box};
 }

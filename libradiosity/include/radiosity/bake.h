@@ -10,9 +10,10 @@ namespace atrium::radiosity {
 
 struct BakeOptions {
   bool group_light = false;  ///< radiance and illuminance by group at the vertices: for the page
-  /// One primitive for all objects of a look; materials have no names, but "plain" if they belong to
-  /// surfaces without elements. Else one per object and side, with its name.
+  /// One primitive for all objects of a look; materials have no names, but "plain" if they belong
+  /// to surfaces without elements. Else one per object and side, with its name.
   bool merge_objects = false;
+  bool backdrop = false;  ///< the environment as a dome, named "sky"
 };
 
 /// The solved scene as viewers without light show it: triangles with their radiance.

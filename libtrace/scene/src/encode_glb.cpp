@@ -67,7 +67,8 @@ class Encoder {
   /// The page's positions in 16 bits where that is finer than a millimetre.
   void choose_positions() {
     for (const BakedModel::Primitive& p : source_.primitives)
-      for (const Vec3f& v : p.positions) box_.extend(v.cast<double>());
+      if (!p.backdrop)
+        for (const Vec3f& v : p.positions) box_.extend(v.cast<double>());
     if (box_.isEmpty()) return;
     step_ = std::max(box_.sizes().maxCoeff() / 65535.0, 1e-9);
     quantised_ = options_.page && step_ <= 1e-3;
@@ -220,9 +221,10 @@ class Encoder {
     tinygltf::Node node;
     node.name = p.name;
     node.mesh = static_cast<int>(out_.meshes.size() - 1);
-    const Vec3d shift = source_.origin + (quantised_ ? box_.min() : Vec3d(Vec3d::Zero()));
+    const bool quantised = quantised_ && !p.backdrop;
+    const Vec3d shift = source_.origin + (quantised ? box_.min() : Vec3d(Vec3d::Zero()));
     if (!shift.isZero(0.0)) node.translation.assign(shift.data(), shift.data() + 3);
-    if (quantised_) node.scale = {step_, step_, step_};
+    if (quantised) node.scale = {step_, step_, step_};
     add_node(std::move(node));
   }
 
@@ -232,7 +234,7 @@ class Encoder {
   }
 
   int positions(const BakedModel::Primitive& p) {
-    if (!quantised_)
+    if (!quantised_ || p.backdrop)
       return buffer_.add_accessor(flat(p.positions),
                                   {TINYGLTF_COMPONENT_TYPE_FLOAT, 3, false, true});
     // Elements of vertices start at multiples of four bytes: a fourth number that is not used.

@@ -168,7 +168,7 @@ TEST(Bake, FilesAreSoundGltf) {
     EXPECT_EQ(extras.at("exposure_ev"), 4.0);
     EXPECT_EQ(extras.at("unit"), "W/(sr m^2)");
     if (page) {
-      EXPECT_EQ(glb.json.at("meshes").size(), 1U);
+      EXPECT_EQ(glb.json.at("meshes").size(), 2U);  // with elements, without
       EXPECT_EQ(extras.at("groups").size(), 2U);
     } else {
       EXPECT_EQ(glb.json.at("meshes").size(), 11U);  // 9 things, of the baffle and panel two sides

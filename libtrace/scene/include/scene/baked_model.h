@@ -50,6 +50,7 @@ struct BakedModel {
     /// By group, then vertex; empty if not asked for.
     std::vector<std::vector<GroupLight>> groups;
     std::vector<std::uint32_t> indices;  ///< triangles
+    bool backdrop = false;               ///< the sky, far away: no part of the scene's extent
   };
   /// A picture of radiance that unlit surfaces look up.
   struct Atlas {
