@@ -58,6 +58,10 @@ void check_export(const std::string& file) {
 void check_export_options(const ExportSettings& settings, const std::vector<std::string>& files) {
   if (settings.ev && !any(files, is_glb) && !any(files, is_page))
     throw Error("--exposure: there is no .glb or .html output");
+  if (settings.lightmap > 0 && !any(files, is_glb))
+    throw Error("--lightmap: there is no .glb output");
+  if (settings.lightmap > 0 && settings.lightmap < 16)
+    throw Error("--lightmap " + std::to_string(settings.lightmap) + ": must be 0, or 16 to 16384");
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY
@@ -88,7 +92,7 @@ std::vector<LitTriangle> lit_triangles(const BakedModel& model) {
   double sum = 0.0;
   for (std::uint32_t k = 0; k < model.primitives.size(); ++k) {
     const BakedModel::Primitive& p = model.primitives[k];
-    if (p.radiance.empty() || p.backdrop) continue;
+    if ((p.radiance.empty() && !model.materials[p.material].atlas) || p.backdrop) continue;
     for (std::uint32_t i = 0; i + 2 < p.indices.size(); i += 3) {
       const auto corner = [&](std::uint32_t n) {
         return Vec3d(p.positions[p.indices[i + n]].cast<double>());
@@ -118,6 +122,16 @@ bool visible(const LitTriangle& t, const BakedModel& model, const scene::RayQuer
 
 Rgb radiance_of(const LitTriangle& t, const BakedModel& model) {
   const BakedModel::Primitive& p = model.primitives[t.primitive];
+  if (model.materials[p.material].atlas) {
+    Vec2f uv = Vec2f::Zero();
+    for (std::uint32_t i = 0; i < 3; ++i) uv += p.uvs[p.indices[t.first + i]] / 3.0f;
+    const auto texel = [](float share, int size) {
+      return static_cast<std::size_t>(share * static_cast<float>(size));
+    };
+    return model.atlas
+        .radiance[texel(uv.y(), model.atlas.height) * static_cast<std::size_t>(model.atlas.width) +
+                  texel(uv.x(), model.atlas.width)];
+  }
   Rgb mean;
   for (std::uint32_t i = 0; i < 3; ++i) mean += p.radiance[p.indices[t.first + i]] * (1.0f / 3.0f);
   const std::int32_t texture = model.materials[p.material].texture;
@@ -197,7 +211,8 @@ class Writer {
   }
 
   void write_glb(const std::string& file) {
-    const BakedModel model = bake({});
+    const BakedModel model = bake({.lightmap = settings_.lightmap});
+    if (settings_.lightmap > 0) describe_lightmap(file, model);
     const scene::GlbOptions options = glb_options(model);
     scene::GlbStatistics statistics;
     scene::write_bytes(scene::encode_glb(model, options, &statistics), file);
@@ -207,6 +222,20 @@ class Writer {
                   model.unit == scene::RadianceUnit::Nit ? "cd/m^2" : "W/(sr m^2)", options.ev,
                   100.0 * statistics.clipped_share);
     session_.progress.note(text);
+  }
+
+  /// Its texels, beside the elements that they stand for.
+  void describe_lightmap(const std::string& file, const BakedModel& model) {
+    double area = 0.0;
+    for (const float a : source_.field.element_area) area += static_cast<double>(a);
+    const double element = std::sqrt(area / static_cast<double>(source_.field.element_count()));
+    const double texel = model.atlas.texel_size;
+    char text[200];
+    std::snprintf(text, sizeof text, "%s: texels of %.3g m, elements of %.3g m in the mean",
+                  file.c_str(), texel, element);
+    texel > element
+        ? session_.progress.warning(std::string(text) + ": a larger --lightmap shows more")
+        : session_.progress.note(text);
   }
 
   void write_page(const std::string& file) {

@@ -87,8 +87,9 @@ struct RenderCommand {
 
 /// How files for other programs are written.
 struct ExportSettings {
-  std::optional<double> ev;  ///< absent: automatic
-  std::string title;         ///< of web pages
+  std::optional<double> ev;    ///< absent: automatic
+  std::uint32_t lightmap = 0;  ///< edge of the atlas of .glb [texels]; 0: vertex colours
+  std::string title;           ///< of web pages
 };
 
 struct SolveCommand {

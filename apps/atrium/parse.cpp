@@ -413,10 +413,15 @@ struct Parser {
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     add_mode(sub, solve_texts);
-    add_exports(sub, solve_texts);
+    add_exports(sub, solve.exports, solve_texts);
     add_common(sub, solve.common);
   }
-  static void add_exports(CLI::App& sub, Texts& t) {
+  static void add_exports(CLI::App& sub, ExportSettings& o, Texts& t) {
+    sub.add_option("--lightmap", o.lightmap,
+                   "light of .glb in a picture of N x N texels; 0: at the vertices")
+        ->check(CLI::Range(0, 16384))
+        ->capture_default_str()
+        ->type_name("N");
     sub.add_option("--exposure", t.exposure,
                    "of .glb and at first of .html: auto, or the exposure value (EV at ISO 100)")
         ->capture_default_str();
@@ -431,7 +436,7 @@ struct Parser {
         ->required()
         ->type_name("FILE");
     add_mode(sub, export_texts);
-    add_exports(sub, export_texts);
+    add_exports(sub, exports.exports, export_texts);
     add_common(sub, exports.common);
   }
   void add_reweight_command(CLI::App& sub) {

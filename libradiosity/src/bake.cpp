@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
-#include <unordered_map>
+#include <optional>
+#include <stdexcept>
 
 #include "bake_plain.h"
 #include "joined_field.h"
+#include "lightmap.h"
 #include "scene/parallel.h"
 #include "triangulate_polygon.h"
 
@@ -37,6 +39,7 @@ class Baker {
         const BakeOptions& options)
       : scene_(scene),
         elements_(elements),
+        field_(field),
         basis_(basis),
         groups_(groups),
         options_(options),
@@ -51,6 +54,7 @@ class Baker {
     find_ranges();
     evaluate_surfaces();
     evaluate_points();
+    if (options_.lightmap > 0) make_lightmap();
     for (const Range& r : ranges_) bake_elements(r);
     bake_the_rest();
     looks_.move_to(model_);
@@ -171,6 +175,32 @@ class Baker {
     return joined_.valid(polygon, side) || surfaces_[polygon][side].exitance.max() > 0.0f;
   }
 
+  std::uint32_t facet_of(std::size_t polygon) const {
+    return field_.element_facet[joined_.element(polygon)];
+  }
+
+  void make_lightmap() {
+    std::vector<std::uint8_t> wanted(2 * field_.facets.size(), 0);
+    const auto for_shown = [&](auto&& f) {
+      for (const Range& r : ranges_)
+        for (const std::size_t side : {0U, 1U}) {
+          if (!lit(r, side)) continue;
+          for (std::size_t k = r.begin; k < r.end; ++k)
+            if (shown(k, side)) f(k, side);
+        }
+    };
+    for_shown([&](std::size_t k, std::size_t side) { wanted[2 * facet_of(k) + side] = 1; });
+    charts_.emplace(field_, wanted, options_.lightmap);
+    std::vector<std::vector<std::uint32_t>> polygons(charts_->charts().size());
+    for_shown([&](std::size_t k, std::size_t side) {
+      const auto& chart = charts_->chart(facet_of(k), side);
+      polygons[static_cast<std::size_t>(&chart - charts_->charts().data())].push_back(
+          static_cast<std::uint32_t>(k));
+    });
+    model_.atlas = Lightmap<N>(scene_, basis_, field_, reader_, joined_, *charts_).fill(polygons);
+    model_.atlas.texel_size = charts_->texel_size();
+  }
+
   void bake_elements(const Range& r) {
     const std::array<bool, 2> sides{lit(r, 0), lit(r, 1)};
     for (const std::size_t side : {0U, 1U}) {
@@ -178,9 +208,14 @@ class Baker {
       BakedModel::Material look;
       const material::Material& m = scene_.material_of(r.object);
       if (!options_.merge_objects) look.name = m.name;
-      const KeptPicture& picture = picture_of(r.object);
-      look.texture = looks_.texture(picture);
-      look.alpha_cutoff = picture.cutoff;
+      if (charts_) {
+        look.atlas = true;
+        look.alpha_cutoff = m.alpha_cutoff > 0.0f ? 0.5f : 0.0f;
+      } else {
+        const KeptPicture& picture = picture_of(r.object);
+        look.texture = looks_.texture(picture);
+        look.alpha_cutoff = picture.cutoff;
+      }
       Primitive& p = primitive(r.object, looks_.material(look));
       add_side(p, r, side, side == 1 && sides[0] && !options_.merge_objects);
     }
@@ -201,7 +236,7 @@ class Baker {
 
   void add_side(Primitive& p, const Range& r, std::size_t side, bool behind) {
     const JoinedMesh& mesh = joined_.mesh();
-    const KeptPicture& picture = picture_of(r.object);
+    const bool mapped = charts_ || picture_of(r.object).of != Of::Nothing;
     std::map<std::tuple<std::uint32_t, float, float>, std::uint32_t> vertices;
     std::vector<Vec3f> corners;
     std::vector<std::uint32_t> number;
@@ -215,13 +250,11 @@ class Baker {
         const std::uint32_t point = mesh.point[c];
         const Vec3f& position = mesh.position[point];
         corners.push_back(position);
-        Vec2f uv = Vec2f::Zero();
-        if (picture.of != Of::Nothing)
-          uv = picture.slot.transform(joined_.surface_point(k, position).uv);
+        const Vec2f uv = mapped ? uv_of(k, side, position) : Vec2f(Vec2f::Zero());
         const auto [known, added] =
             vertices.emplace(std::tuple(point, rounded(uv.x()), rounded(uv.y())),
                              static_cast<std::uint32_t>(p.positions.size()));
-        if (added) add_vertex(p, point, side, uv, picture.of != Of::Nothing, behind);
+        if (added) add_vertex(p, point, side, uv, mapped, behind);
         number.push_back(known->second);
       }
       triangulate_polygon(corners, triangles);
@@ -231,14 +264,24 @@ class Baker {
     }
   }
 
-  /// Seams of a map are wider than this; rounding of barycentrics is not.
-  static float rounded(float uv) { return std::round(uv * 8192.0f); }
+  /// In the atlas, or in the picture that is kept.
+  Vec2f uv_of(std::size_t polygon, std::size_t side, const Vec3f& position) const {
+    if (!charts_)
+      return picture_of(object_of(polygon))
+          .slot.transform(joined_.surface_point(polygon, position).uv);
+    return (charts_->texel(facet_of(polygon), side, position) / charts_->size())
+        .template cast<float>();
+  }
 
-  void add_vertex(Primitive& p, std::uint32_t point, std::size_t side, const Vec2f& uv,
-                  bool textured, bool behind) {
+  /// Seams of a map are wider than this; rounding of barycentrics is not.
+  static float rounded(float uv) { return std::round(uv * 65536.0f); }
+
+  void add_vertex(Primitive& p, std::uint32_t point, std::size_t side, const Vec2f& uv, bool mapped,
+                  bool behind) {
     const Vec3f& position = joined_.mesh().position[point];
     p.positions.push_back(behind ? Vec3f(position - gap_ * normal_at(point)) : position);
-    if (textured) p.uvs.push_back(uv);
+    if (mapped) p.uvs.push_back(uv);
+    if (charts_) return;
     const PointLight& light = light_[side][point];
     p.radiance.push_back(light.radiance);
     for (std::size_t g = 0; g < p.groups.size(); ++g) p.groups[g].push_back(light.groups[g]);
@@ -283,6 +326,7 @@ class Baker {
 
   const Scene& scene_;
   const Elements& elements_;
+  const SurfaceField& field_;
   material::SpectralBasis basis_;
   std::span<const scene::GroupField> groups_;
   BakeOptions options_;
@@ -290,6 +334,7 @@ class Baker {
   JoinedField<N> joined_;
   BakedLooks looks_;
   PlainBaker<N> plain_;
+  std::optional<LightmapCharts> charts_;
   std::vector<Range> ranges_;
   std::vector<KeptPicture> pictures_;             // by material
   std::vector<BothSurfaces<N>> surfaces_;         // by polygon, less the kept pictures
@@ -305,6 +350,8 @@ class Baker {
 BakedModel bake(const Scene& scene, const Elements& elements, const SurfaceField& field,
                 const material::SpectralBasis& basis, std::span<const scene::GroupField> groups,
                 const BakeOptions& options) {
+  if (options.lightmap > 0 && (options.lightmap < 16 || options.group_light))
+    throw std::invalid_argument("bake: a lightmap has 16 texels along an edge, and no groups");
   return with_lanes(basis.lanes(), [&](auto lanes) {
     return Baker<lanes()>(scene, elements, field, basis, groups, options).bake();
   });

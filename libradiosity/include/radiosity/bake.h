@@ -14,6 +14,9 @@ struct BakeOptions {
   /// to surfaces without elements. Else one per object and side, with its name.
   bool merge_objects = false;
   bool backdrop = false;  ///< the environment as a dome, named "sky"
+  /// Edge of an atlas in texels, at least 16: surfaces with elements look their radiance up there,
+  /// textures included, instead of having it at their vertices. 0: none. Not with group_light.
+  std::uint32_t lightmap = 0;
 };
 
 /// The solved scene as viewers without light show it: triangles with their radiance.
@@ -29,6 +32,7 @@ struct BakeOptions {
 ///
 /// \param groups  of the field, or empty: then it is one group, "all".
 /// \throws std::invalid_argument  as to_polygon_mesh().
+/// \throws Error  if an atlas is too small for the charts; says which size is not.
 [[nodiscard]] scene::BakedModel bake(const scene::Scene& scene, const Elements& elements,
                                      const scene::SurfaceField& field,
                                      const material::SpectralBasis& basis,

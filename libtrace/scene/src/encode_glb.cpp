@@ -337,6 +337,7 @@ class Encoder {
                     {"unit", Value(std::string(nits ? "cd/m^2" : "W/(sr m^2)"))},
                     {"exposure_ev", Value(options_.ev)},
                     {"radiosity", Value(std::string("pi * radiance_of_white * linear colour"))},
+                    {"lightmap_texel_m", Value(source_.atlas.texel_size)},
                     {"clipped_share", Value(statistics().clipped_share)}};
     if (options_.page) {
       Value::Array groups;

@@ -55,6 +55,7 @@ struct BakedModel {
   /// A picture of radiance that unlit surfaces look up.
   struct Atlas {
     int width = 0, height = 0;
+    double texel_size = 0.0;          ///< [m]
     std::vector<Rgb> radiance;        ///< rows from the top
     std::vector<std::uint8_t> alpha;  ///< 0 where a cut-out surface is not there; or empty: 255
   };
