@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "lightmap_charts.h"
 #include "material/error.h"
 #include "physics/radiosity_support.h"
 #include "radiosity/export_mesh.h"
@@ -250,6 +251,89 @@ TEST(Bake, SidesShowTheirOwnLight) {
   ASSERT_EQ(mean.size(), 2U);
   EXPECT_NEAR(normal[0].dot(normal[1]), -1.0f, 1e-4f);
   EXPECT_GT(std::max(mean[0], mean[1]), 1.5 * std::min(mean[0], mean[1]));
+}
+
+// With textures of the walls in the atlas: 2 cm texels, 8 bits of sRGB (0.4 %).
+TEST(Lightmap, AFileShowsTheField) {
+  if (!scene::image_io_available()) GTEST_SKIP() << "built without OpenImageIO";
+  const Baked b(true);
+  const scene::Image field =
+      test::field_picture<3>(b.query, kRgb, b.result.field, b.scene.cameras[0], 80, 60);
+  const BakedModel model = b.model({.lightmap = 512});
+  EXPECT_TRUE(model.textures.empty());
+  EXPECT_LT(model.atlas.texel_size, 0.03);
+  const std::vector<std::uint8_t> bytes = encode(model, 25.0);
+  test::check_glb(test::parse_glb(bytes));
+  EXPECT_LT(difference(picture_of(bytes, 80, 60), 25.0, field), 0.025);
+}
+
+// At every corner the bilinear look-up finds what that corner has as a vertex colour, whatever lies
+// beside its chart: neighbours in the atlas are of other brightness.
+TEST(Lightmap, CornersLookUpTheirOwnLight) {
+  const Baked& b = plain();
+  for (const std::uint32_t size : {64U, 256U, 1024U}) {
+    SCOPED_TRACE(size);
+    const BakedModel colours = b.model();
+    const BakedModel map = b.model({.lightmap = size});
+    const BakedModel::Atlas& atlas = map.atlas;
+    const auto texel = [&](int x, int y) {
+      return static_cast<double>(atlas.radiance[static_cast<std::size_t>(y * atlas.width + x)][1]);
+    };
+    double sum = 0.0, error = 0.0, largest = 0.0;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < map.primitives.size(); ++k) {
+      const BakedModel::Primitive& p = map.primitives[k];
+      if (p.uvs.empty()) continue;
+      const BakedModel::Primitive& q = colours.primitives[k];
+      ASSERT_EQ(p.name, q.name);
+      ASSERT_EQ(p.positions, q.positions);  // no smooth surfaces here, which share points
+      for (std::size_t i = 0; i < p.positions.size(); ++i) {
+        const double u = static_cast<double>(p.uvs[i].x()) * atlas.width - 0.5;
+        const double v = static_cast<double>(p.uvs[i].y()) * atlas.height - 0.5;
+        const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
+        const double s = u - x, t = v - y;
+        ASSERT_TRUE(x >= 1 && y >= 1 && x + 1 < atlas.width && y + 1 < atlas.height);
+        const double found = (1 - s) * (1 - t) * texel(x, y) + s * (1 - t) * texel(x + 1, y) +
+                             (1 - s) * t * texel(x, y + 1) + s * t * texel(x + 1, y + 1);
+        const double right = static_cast<double>(q.radiance[i][1]);
+        error += std::abs(found - right);
+        largest = std::max(largest, std::abs(found - right));
+        sum += right;
+        ++count;
+      }
+    }
+    // What texels smooth: with 16 cm (64) elements of 10 cm, with 1 cm (1024) next to nothing.
+    EXPECT_LT(error / sum, size == 64 ? 0.05 : size == 256 ? 0.01 : 0.003);
+    // A neighbour's light at a border would be off by its own brightness.
+    EXPECT_LT(largest, 0.5 * sum / static_cast<double>(count));
+  }
+}
+
+TEST(Lightmap, ChartsLieApartAndUseOneSizeOfTexel) {
+  const Baked& b = plain();
+  const std::vector<std::uint8_t> wanted(2 * b.result.field.facets.size(), 1);
+  const radiosity::LightmapCharts charts(b.result.field, wanted, 256);
+  std::vector<std::uint8_t> used(256 * 256, 0);
+  std::size_t texels = 0;
+  for (const auto& c : charts.charts()) {
+    const auto& f = b.result.field.facets[c.facet];
+    const double width = f.nx / static_cast<double>(f.axis_u.norm());
+    if (c.width > 2) EXPECT_NEAR((c.width - 1) * charts.texel_size(), width, charts.texel_size());
+    constexpr std::uint32_t kPad = radiosity::LightmapCharts::kPadding;
+    for (std::uint32_t y = c.y - kPad; y < c.y + c.height + kPad; ++y)
+      for (std::uint32_t x = c.x - kPad; x < c.x + c.width + kPad; ++x) {
+        ASSERT_LT(std::max(x, y), 256U);
+        EXPECT_EQ(used[y * 256 + x]++, 0);
+        ++texels;
+      }
+  }
+  EXPECT_GT(texels, 256U * 256U / 2);  // of the atlas is used
+  try {
+    (void)radiosity::LightmapCharts(b.result.field, wanted, 16);
+    ADD_FAILURE() << "22 charts of at least 4 x 4 texels do not fit";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("32 has"), std::string::npos) << e.what();
+  }
 }
 
 // Groups of the page sum to the whole within the steps of 0.4 %.
