@@ -107,15 +107,21 @@ std::vector<LitTriangle> lit_triangles(const BakedModel& model) {
   return list;
 }
 
-/// Can a triangle be seen from where the first camera stands, through panes too?
+/// Does the first camera see a triangle, through panes too?
 bool visible(const LitTriangle& t, const BakedModel& model, const scene::RayQuery& query) {
   if (model.cameras.empty()) return true;
-  const Vec3d eye = eye_of(model);
-  const Vec3d d = t.centre - eye;
+  const scene::Camera& camera = model.cameras.front();
+  const Vec3d d = t.centre - eye_of(model);
   const double length = d.norm();
   if (!(length > 1e-3)) return true;
+  if (camera.kind == scene::Camera::Kind::Perspective) {
+    const Vec3d p = camera.to_scene.linear().transpose() * d;
+    const double reach = -p.z() * std::tan(0.5 * camera.yfov);
+    const double aspect = camera.aspect > 0.0 ? camera.aspect : 4.0 / 3.0;
+    if (!(std::abs(p.y()) < reach && std::abs(p.x()) < reach * aspect)) return false;
+  }
   scene::Counters counters;
-  return !query.occluded({eye.cast<float>(), (d / length).cast<float>(), 0.0f,
+  return !query.occluded({eye_of(model).cast<float>(), (d / length).cast<float>(), 0.0f,
                           static_cast<float>(length * (1.0 - 1e-3))},
                          counters, scene::Counter::RaysPrimary, scene::kOpaque);
 }
@@ -139,9 +145,10 @@ Rgb radiance_of(const LitTriangle& t, const BakedModel& model) {
   return mean;
 }
 
-/// What the first camera has round it, as a picture; empty if there is no light.
-scene::Image surroundings(const BakedModel& model, const scene::RayQuery& query) {
-  constexpr std::size_t kSamples = 1 << 14;
+/// What the first camera sees, as a picture of one line; empty if there is no light. Without a
+/// camera all surfaces.
+scene::Image seen_by_camera(const BakedModel& model, const scene::RayQuery& query) {
+  constexpr std::size_t kSamples = 1 << 16;
   scene::Image image;
   image.channels = {"R", "G", "B"};
   const std::vector<LitTriangle> triangles = lit_triangles(model);
@@ -194,6 +201,10 @@ class Writer {
     BakedModel model = radiosity::bake(scene_, elements_, source_.field, source_.loaded.basis,
                                        source_.groups, options);
     for (const std::string& warning : model.warnings) session_.progress.warning(warning);
+    if (model.cameras.empty()) {
+      model.cameras = {scene::choose_interior_view(scene_, *source_.loaded.query)};
+      model.cameras[0].name = "inside";
+    }
     return model;
   }
 
@@ -202,7 +213,7 @@ class Writer {
     if (settings_.ev) {
       o.ev = *settings_.ev;
     } else {
-      const scene::Image samples = surroundings(model, *source_.loaded.query);
+      const scene::Image samples = seen_by_camera(model, *source_.loaded.query);
       o.ev = samples.pixels.empty() ? 0.0 : trace::automatic_ev(samples);
     }
     o.white = trace::white_at(o.ev);

@@ -56,6 +56,7 @@ BakedModel::Material PlainBaker<N>::look(ObjectId object) const {
     if (m.medium == Material::Medium::Solid) {
       look.color = unit_range(basis_.to_rgb<N>(resolved.transmission_tint));
       look.attenuation = unit_range(basis_.to_rgb<N>(exp_minus(resolved.extinction, 1.0f)));
+      look.double_sided = false;  // it has a back of its own
       scene::Bounds box;
       const auto count = static_cast<std::uint32_t>(scene_.mesh_of(object).triangles.size());
       for (std::uint32_t i = 0; i < count; ++i)

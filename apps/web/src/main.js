@@ -15,7 +15,7 @@ function say(message) {
   box.hidden = false;
 }
 
-/** #camera=1&ev=7&lux=500&panel=off&group0=0.5&probe=0.5,0.5 */
+/** #camera=NAME or number, mode=orbit, ev=7, lux=500, panel=off, group0=0.5, probe=0.5,0.5: joined by & */
 const link = new URLSearchParams(location.hash.slice(1));
 
 class Viewer {
@@ -80,8 +80,9 @@ class Viewer {
 
   #followLink() {
     this.light.groups.forEach((_, i) => {
-      if (link.has(`group${i}`)) this.#dim(i, Number(link.get(`group${i}`)));
+      if (link.has(`group${i}`)) this.panel.setGroup(i, Number(link.get(`group${i}`)));
     });
+    if (link.get('mode') === 'orbit') this.#setWalking(false);
     if (!link.has('probe')) return;
     const [x, y] = link.get('probe').split(',').map(Number);
     this.panel.showReading(this.probe.read(this.scene, this.camera, this.panes, x, y));

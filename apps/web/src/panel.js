@@ -60,6 +60,15 @@ export class Panel {
   showReading(lux) { $('readout').textContent = lux === undefined ? '\u00a0' : `${figure(lux)} lx`; }
   hide() { $('panel').classList.add('off'); }
 
+  setGroup(i, factor) {
+    const [, slider, out] = $('groups').children[i]?.children ?? [];
+    if (slider) {
+      slider.value = String(factor);
+      out.value = `${Math.round(100 * factor)} %`;
+    }
+    this.act.group(i, factor);
+  }
+
   #addGroup(name, i) {
     const row = document.createElement('label');
     row.className = 'row';
@@ -68,10 +77,7 @@ export class Panel {
     const slider = Object.assign(document.createElement('input'), {type: 'range', min: '0', max: '2', step: '0.02', value: '1'});
     const out = document.createElement('output');
     out.value = '100 %';
-    slider.oninput = () => {
-      out.value = `${Math.round(100 * Number(slider.value))} %`;
-      this.act.group(i, Number(slider.value));
-    };
+    slider.oninput = () => this.setGroup(i, Number(slider.value));
     row.append(text, slider, out);
     $('groups').append(row);
   }

@@ -175,8 +175,9 @@ TEST_F(Page, HoldsEverythingAndAsksForNothing) {
 }
 
 // The same camera, exposure and curve, from the field by our own tracer (through the .glb, which
-// BakeTest compares with the field) and by the browser: 8-bit values differ by 1.5 in the mean, for
-// steps of 0.4 % in light, positions in 16 bits and other samples on edges.
+// BakeTest compares with the field) and by the browser: 8-bit values differ by 0.5 at most in the
+// mean (0.14 are found), for steps of 0.4 % in light, positions in 16 bits and other samples on
+// edges.
 TEST_F(Page, ShowsWhatTheTracerShows) {
   if (!atrium::scene::image_io_available()) GTEST_SKIP() << "built without OpenImageIO";
   // 1 in the file is 1.2 * 2^13 cd/m^2; that shall be shown as at EV 7.
@@ -203,7 +204,9 @@ TEST_F(Page, ShowsWhatTheTracerShows) {
         brightest = std::max(brightest, shown(tracer.at(x, y, c)));
       }
   EXPECT_GT(brightest, 150.0);
-  EXPECT_LT(sum / (3.0 * page.width * page.height), 1.5);
+  const double mean = sum / (3.0 * page.width * page.height);
+  RecordProperty("mean_difference", std::to_string(mean));
+  EXPECT_LT(mean, 0.5);
 }
 
 // Against a sensor, which traces rays of its own: within twice the RMS of 6.5 % that the draft

@@ -127,6 +127,7 @@ double difference(const scene::Image& a, double scale, const scene::Image& refer
         mean += r;
       }
   EXPECT_GT(mean, 0.0);
+  ::testing::Test::RecordProperty("difference_percent", std::to_string(100.0 * sum / mean));
   return sum / mean;
 }
 
