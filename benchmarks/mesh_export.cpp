@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <string>
 
@@ -46,16 +47,22 @@ scene::SurfaceField noisy(const radiosity::Elements& elements) {
   return field;
 }
 
+/// Seconds since the last line, by the wall and of all processors.
 class Clock {
  public:
-  void say(const char* what) {
-    const auto now = std::chrono::steady_clock::now();
-    std::printf("%-28s %7.2f s\n", what, std::chrono::duration<double>(now - last_).count());
-    last_ = std::chrono::steady_clock::now();
+  void say(const std::string& what) {
+    const auto wall = std::chrono::steady_clock::now();
+    const std::clock_t cpu = std::clock();
+    std::printf("%-28s %7.2f %7.2f\n", what.c_str(),
+                std::chrono::duration<double>(wall - wall_).count(),
+                static_cast<double>(cpu - cpu_) / CLOCKS_PER_SEC);
+    wall_ = std::chrono::steady_clock::now();
+    cpu_ = std::clock();
   }
 
  private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_ = std::clock();
 };
 
 }  // namespace
@@ -67,7 +74,7 @@ int main(int argc, char** argv) {
       scene, {.element_size = 10.0 / n, .max_elements = static_cast<std::uint32_t>(n * n)});
   const scene::SurfaceField field = noisy(elements);
   const auto basis = material::SpectralBasis::rgb();
-  std::printf("%zu elements\n", field.element_count());
+  std::printf("%zu elements              wall s   CPU s\n", field.element_count());
   const auto folder = std::filesystem::temp_directory_path();
   Clock clock;
   const auto again = radiosity::elements_of_field(scene, field);
@@ -77,9 +84,9 @@ int main(int argc, char** argv) {
   for (const char* ending : {"vtp", "vtu"}) {
     const auto file = folder / ("mesh_export." + std::string(ending));
     scene::write_polygon_mesh(mesh, file);
-    clock.say(("write ." + std::string(ending)).c_str());
+    clock.say("write ." + std::string(ending));
     const auto summary = scene::summarise_mesh_file(file);
-    clock.say(("read ." + std::string(ending)).c_str());
+    clock.say("read ." + std::string(ending));
     std::printf("%28.1f MB, %llu polygons\n",
                 1e-6 * static_cast<double>(std::filesystem::file_size(file)),
                 static_cast<unsigned long long>(summary.polygons));
