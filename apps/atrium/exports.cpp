@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "material/error.h"
+#include "scene/image_io.h"
 #include "scene/mesh_io.h"
 #include "scene/output_file.h"
 #include "trace/tone_map.h"
@@ -62,6 +63,8 @@ void check_export_options(const ExportSettings& settings, const std::vector<std:
     throw Error("--lightmap: there is no .glb output");
   if (settings.lightmap > 0 && settings.lightmap < 16)
     throw Error("--lightmap " + std::to_string(settings.lightmap) + ": must be 0, or 16 to 16384");
+  if (settings.lightmap > 0 && !scene::image_io_available())
+    throw RuntimeFailure("--lightmap: pictures are not part of this build (no OpenImageIO)");
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY

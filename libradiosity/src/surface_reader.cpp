@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <numbers>
-#include <stdexcept>
+
+#include "material/error.h"
 
 namespace atrium::radiosity {
 
@@ -21,7 +22,7 @@ std::vector<std::uint32_t> emission_groups(const Scene& scene,
     const auto first = found.group.begin() + static_cast<std::ptrdiff_t>(scene.lights.size());
     return {first, first + static_cast<std::ptrdiff_t>(scene.objects.size() + 1)};
   }
-  throw std::invalid_argument("export: the light groups are not those of the scene");
+  throw Error("export: the light groups of the solution are not those of the scene");
 }
 
 template <int N>

@@ -20,7 +20,7 @@ struct SideSurface {
 
 /// The group that each object's emission is in, by object, and last that of the environment; empty
 /// without groups.
-/// \throws std::invalid_argument  if the scene's groups have other names.
+/// \throws Error  if the scene's groups have other names.
 [[nodiscard]] std::vector<std::uint32_t> emission_groups(const scene::Scene& scene,
                                                          std::span<const scene::GroupField> groups);
 

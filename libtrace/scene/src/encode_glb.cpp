@@ -357,6 +357,7 @@ class Encoder {
   std::vector<std::uint8_t> bytes() {
     std::vector<unsigned char>& data = out_.buffers[0].data;
     data.resize((data.size() + 3) / 4 * 4, 0);
+    if (data.size() > 0x7fffffffU) throw RuntimeFailure("glTF: more than 2 GB in one file");
     return encode_gltf(out_);
   }
 

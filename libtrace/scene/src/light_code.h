@@ -7,7 +7,7 @@
 namespace atrium::scene {
 
 /// Light in 16 bits: 0 is 0, then 4095 steps of equal ratio up to the largest value, 0.4 % each
-/// over 23 factors of two. The low four bits repeat, so that it compresses.
+/// over 23 factors of two. The low four bits are 0, so that it compresses.
 struct LightCode {
   static constexpr double kSteps = 4095.0;
   static constexpr double kOctaves = 23.0;
