@@ -273,9 +273,15 @@ void write_exports(Session& session, const ExportSource& source,
                    const std::vector<std::string>& files, const ExportSettings& settings) {
   if (!any(files, is_export)) return;
   session.clock.enter("write");
+  const auto count = static_cast<double>(std::count_if(files.begin(), files.end(), is_export));
+  double done = 0.0;
+  session.progress.report("write", 0.0, {});
   Writer writer(session, source, settings);
-  for (const std::string& file : files)
-    if (is_export(file)) writer.write(file);
+  for (const std::string& file : files) {
+    if (!is_export(file)) continue;
+    writer.write(file);
+    session.progress.report("write", ++done / count, {});
+  }
 }
 
 #else

@@ -319,7 +319,9 @@ TEST(Lightmap, ChartsLieApartAndUseOneSizeOfTexel) {
   for (const auto& c : charts.charts()) {
     const auto& f = b.result.field.facets[c.facet];
     const double width = f.nx / static_cast<double>(f.axis_u.norm());
-    if (c.width > 2) EXPECT_NEAR((c.width - 1) * charts.texel_size(), width, charts.texel_size());
+    if (c.width > 2) {
+      EXPECT_NEAR((c.width - 1) * charts.texel_size(), width, charts.texel_size());
+    }
     constexpr std::uint32_t kPad = radiosity::LightmapCharts::kPadding;
     for (std::uint32_t y = c.y - kPad; y < c.y + c.height + kPad; ++y)
       for (std::uint32_t x = c.x - kPad; x < c.x + c.width + kPad; ++x) {
@@ -378,8 +380,12 @@ TEST(Bake, MirrorsAndPanesKeepTheirKind) {
   for (const auto& p : model.primitives) {
     const BakedModel::Material& m = model.materials[p.material];
     ++kinds[m.kind];
-    if (m.kind == Kind::Metal) EXPECT_NEAR(m.color[0], 0.96, 0.05);
-    if (m.kind == Kind::Glass) EXPECT_NEAR(m.color[0], 0.92, 0.03);
+    if (m.kind == Kind::Metal) {
+      EXPECT_NEAR(m.color[0], 0.96, 0.05);
+    }
+    if (m.kind == Kind::Glass) {
+      EXPECT_NEAR(m.color[0], 0.92, 0.03);
+    }
     EXPECT_EQ(p.normals.empty(), m.kind == Kind::Unlit);
   }
   EXPECT_EQ(kinds[Kind::Metal], 1);
