@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs the Debian 12 packages that Atrium needs; does nothing if all are there.
 #   scripts/install_deps.sh build        to build and run the programs
+#   scripts/install_deps.sh build web    and to make web pages (.html)
 #   scripts/install_deps.sh build test   and to run the tests
 #   scripts/install_deps.sh build bench  and to run the benchmarks
 set -eu
@@ -8,17 +9,20 @@ set -eu
 build="g++ cmake ninja-build ccache pkg-config
   libembree-dev libtbb-dev libeigen3-dev libopenmesh-dev libosd-dev libopenimageio-dev libvtk9-dev
   fonts-dejavu-core
-  libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libassimp-dev libtinygltf-dev libtinyobjloader-dev"
-test="libgtest-dev xvfb xauth"
+  libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libassimp-dev libtinygltf-dev libtinyobjloader-dev
+  zlib1g-dev"
+web="nodejs npm"
+test="libgtest-dev xvfb xauth chromium"
 bench="libbenchmark-dev python3"
 
 wanted=""
 for list in "$@"; do
   case "$list" in
     build) wanted="$wanted $build" ;;
+    web) command -v npm >/dev/null || wanted="$wanted $web" ;;
     test) wanted="$wanted $test" ;;
     bench) wanted="$wanted $bench" ;;
-    *) echo "install_deps.sh: unknown list '$list' (known: build test bench)" >&2; exit 2 ;;
+    *) echo "install_deps.sh: unknown list '$list' (known: build web test bench)" >&2; exit 2 ;;
   esac
 done
 

@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-scripts/install_deps.sh build test
+scripts/install_deps.sh build web test
 cmake --preset release >/dev/null
 cmake --build --preset release
 exec ctest --test-dir build/release -j2 --output-on-failure

@@ -9,6 +9,7 @@ namespace atrium::app {
 // One file per subcommand. They return the exit code and throw Error or RuntimeFailure.
 int run_render(const RenderCommand& command, std::stop_token stop);
 int run_solve(const SolveCommand& command, std::stop_token stop);
+int run_export(const ExportCommand& command, std::stop_token stop);
 int run_reweight(const ReweightCommand& command);
 int run_measure(const MeasureCommand& command, std::stop_token stop);
 int run_info(const InfoCommand& command, std::stop_token stop);

@@ -7,6 +7,7 @@
 #include "material/error.h"
 #include "scene/image_io.h"
 #include "scene/luminaire.h"
+#include "scene/mesh_io.h"
 #include "scene/output_file.h"
 #include "scene/portal.h"
 #include "scene/scene_io.h"
@@ -124,6 +125,50 @@ void info_solution(const std::string& file, Report& r) {
   r.list("light groups", groups);
 }
 
+std::string size_text(const scene::Bounds& bounds) {
+  if (bounds.isEmpty()) return "empty";
+  const Vec3d s = bounds.sizes();
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3f x %.3f x %.3f", s.x(), s.y(), s.z());
+  return text;
+}
+
+std::string array_text(const scene::MeshFileSummary::Array& a) {
+  char range[64];
+  std::snprintf(range, sizeof range, ": %.6g to %.6g", a.low, a.high);
+  std::string text = a.name + range + (a.unit.empty() || a.unit == "1" ? "" : " " + a.unit);
+  return text + ", " + a.type + (a.components == 1 ? "" : " x " + std::to_string(a.components));
+}
+
+void add_arrays(const std::vector<scene::MeshFileSummary::Array>& arrays, const char* name,
+                Report& r) {
+  std::vector<std::string> texts;
+  for (const scene::MeshFileSummary::Array& a : arrays) texts.push_back(array_text(a));
+  r.list(name, texts);
+}
+
+void info_mesh_file(const std::string& file, Report& r) {
+  const scene::MeshFileSummary s = scene::summarise_mesh_file(file);
+  r.add("mesh", file);
+  r.add("polygons", s.polygons);
+  r.add("points", s.points);
+  r.add("size",
+        size_text({Vec3d(s.bounds[0], s.bounds[2], s.bounds[4]),
+                   Vec3d(s.bounds[1], s.bounds[3], s.bounds[5])}),
+        "m");
+  add_arrays(s.cell_arrays, "arrays of polygons (range; of colours that of their luminance)", r);
+  add_arrays(s.point_arrays, "arrays of points", r);
+  std::vector<std::string> words;
+  for (const auto& [name, values] : s.field_data) {
+    if (name == "array_names" || name == "array_units") continue;  // said with the arrays
+    if (values.size() == 1)
+      words.push_back(name + ": " + values[0]);
+    else
+      words.push_back(name + ": " + std::to_string(values.size()) + " values");
+  }
+  r.list("remarks", words);
+}
+
 void add_load_report(const scene::LoadReport& l, Report& r) {
   const std::pair<const char*, std::uint64_t> counts[] = {
       {"triangles read", l.triangles_read},
@@ -152,14 +197,6 @@ std::string camera_text(const scene::Camera& camera, std::size_t index) {
                                                                         : "panorama";
   return std::to_string(index) + (camera.name.empty() ? "" : " \"" + camera.name + "\"") + ", " +
          kind;
-}
-
-std::string size_text(const scene::Bounds& bounds) {
-  if (bounds.isEmpty()) return "empty";
-  const Vec3d s = bounds.sizes();
-  char text[96];
-  std::snprintf(text, sizeof text, "%.3f x %.3f x %.3f", s.x(), s.y(), s.z());
-  return text;
 }
 
 /// What lies around the scene, in words and in the scene's unit.
@@ -282,15 +319,18 @@ int run_info(const InfoCommand& c, std::stop_token stop) {
   const std::string ending = scene::file_ending(first);
   const bool image = scene::is_image_ending(first);
   const bool luminaire = scene::is_luminaire_ending(first);
-  const bool single = image || luminaire || ending == ".atrium";
+  const bool mesh = scene::is_mesh_ending(first);
+  const bool single = image || luminaire || mesh || ending == ".atrium";
   if (single && c.scene.files.size() > 1) {
-    throw Error(first + ": is no scene; one luminaire, image or solution at a time");
+    throw Error(first + ": is no scene; one luminaire, image, mesh or solution at a time");
   }
   Report report(c.json);
   if (luminaire) {
     info_luminaire(first, report);
   } else if (ending == ".atrium") {
     info_solution(first, report);
+  } else if (mesh) {
+    info_mesh_file(first, report);
   } else if (image) {
     info_image(first, report);
   } else {

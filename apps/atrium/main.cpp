@@ -25,6 +25,7 @@ struct Run {
   int operator()(const Finished& c) const { return c.code; }
   int operator()(const RenderCommand& c) const { return run_render(c, stop); }
   int operator()(const SolveCommand& c) const { return run_solve(c, stop); }
+  int operator()(const ExportCommand& c) const { return run_export(c, stop); }
   int operator()(const ReweightCommand& c) const { return run_reweight(c); }
   int operator()(const MeasureCommand& c) const { return run_measure(c, stop); }
   int operator()(const InfoCommand& c) const { return run_info(c, stop); }

@@ -46,8 +46,7 @@ scene::SurfaceField find_field(Session& session, const MeasureCommand& c, const 
     session.detail("skipped: radiosity: " + why);
     return {};
   }
-  RadiosityRun run =
-      run_radiosity(session, loaded, c.solve, c.solve.time_limit, /*want_mesh=*/false);
+  RadiosityRun run = run_radiosity(session, loaded, c.solve, c.solve.time_limit);
   statistics.solve = run.summary;
   statistics.counters += run.summary.counters;
   return std::move(run.field);

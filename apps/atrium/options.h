@@ -85,11 +85,29 @@ struct RenderCommand {
   std::string save_solution;
 };
 
+/// How files for other programs are written.
+struct ExportSettings {
+  std::optional<double> ev;    ///< absent: automatic
+  std::uint32_t lightmap = 0;  ///< edge of the atlas of .glb [texels]; 0: vertex colours
+  std::string title;           ///< of web pages
+};
+
 struct SolveCommand {
   CommonOptions common;
   SceneOptions scene;
   SolveSettings solve;
+  ExportSettings exports;
   std::string solution;  ///< to go on from; may be empty
+  std::vector<std::string> outputs;
+};
+
+/// `atrium export`.
+struct ExportCommand {
+  CommonOptions common;
+  SceneOptions scene;
+  ExportSettings exports;
+  bool paper_weights = false;  ///< --mode paper
+  std::string solution;
   std::vector<std::string> outputs;
 };
 
@@ -178,10 +196,10 @@ struct Finished {
   int code = 0;
 };
 
-using Command =
-    std::variant<Finished, RenderCommand, SolveCommand, ReweightCommand, MeasureCommand,
-                 InfoCommand, CompareCommand, MaterialEvalCommand, MaterialDeriveCommand,
-                 MaterialListCommand, MaterialShowCommand, MaterialCompareCommand>;
+using Command = std::variant<Finished, RenderCommand, SolveCommand, ExportCommand, ReweightCommand,
+                             MeasureCommand, InfoCommand, CompareCommand, MaterialEvalCommand,
+                             MaterialDeriveCommand, MaterialListCommand, MaterialShowCommand,
+                             MaterialCompareCommand>;
 
 /// \throws Error  on wrong usage, one line.
 [[nodiscard]] Command parse_command_line(int argc, char** argv);

@@ -216,6 +216,11 @@ void finish(SceneOptions& o, const Texts& t) {
   o.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
 }
 
+void finish(ExportSettings& o, const SceneOptions& scene, const Texts& t) {
+  o.ev = parse_exposure(t.exposure);
+  o.title = std::filesystem::path(scene.files.front()).stem().string();
+}
+
 MeasureCommand finish(MeasureCommand o, const std::vector<std::string>& grid, const CLI::App& app) {
   if (!grid.empty()) o.grid = parse_grid(grid);
   const int places = (o.points.empty() ? 0 : 1) + (o.grid ? 1 : 0) + (o.work_plane ? 1 : 0);
@@ -353,6 +358,7 @@ struct Parser {
   CLI::App app{"Atrium: light in buildings by radiosity and ray tracing", "atrium"};
   RenderCommand render;
   SolveCommand solve;
+  ExportCommand exports;
   ReweightCommand reweight;
   std::vector<std::string> reweight_factors;
   MeasureCommand measure;
@@ -360,7 +366,7 @@ struct Parser {
   InfoCommand info;
   CompareCommand compare;
   MaterialParser material;
-  Texts render_texts, solve_texts, measure_texts, info_texts;
+  Texts render_texts, solve_texts, export_texts, measure_texts, info_texts;
   bool print_config = false;
 
   Parser() {
@@ -373,6 +379,7 @@ struct Parser {
     app.fallthrough();
     add_render(*app.add_subcommand("render", "render a picture of a scene"), render, render_texts);
     add_solve_command(*app.add_subcommand("solve", "radiosity only, as a mesh or to render later"));
+    add_export_command(*app.add_subcommand("export", "files for other programs, of a solution"));
     add_reweight_command(
         *app.add_subcommand("reweight", "dim the light groups of a solution, without a ray"));
     add_measure_command(
@@ -385,9 +392,10 @@ struct Parser {
  private:
   void add_solve_command(CLI::App& sub) {
     add_scene(sub, solve.scene, solve_texts);
-    sub.add_option("-o,--output", solve.outputs,
-                   "result, may be repeated: .vtp .vtu (mesh with arrays), .atrium (for render "
-                   "--solution)")
+    sub.add_option(
+           "-o,--output", solve.outputs,
+           "result, may be repeated: .vtp .vtu (mesh with arrays), .glb .html (to look at), "
+           ".atrium (for render --solution, export)")
         ->required()
         ->type_name("FILE");
     add_solve(sub, solve.solve, solve_texts);
@@ -405,7 +413,31 @@ struct Parser {
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     add_mode(sub, solve_texts);
+    add_exports(sub, solve.exports, solve_texts);
     add_common(sub, solve.common);
+  }
+  static void add_exports(CLI::App& sub, ExportSettings& o, Texts& t) {
+    sub.add_option("--lightmap", o.lightmap,
+                   "light of .glb in a picture of N x N texels; 0: at the vertices")
+        ->check(CLI::Range(0, 16384))
+        ->capture_default_str()
+        ->type_name("N");
+    sub.add_option("--exposure", t.exposure,
+                   "of .glb and at first of .html: auto, or the exposure value (EV at ISO 100)")
+        ->capture_default_str();
+  }
+  void add_export_command(CLI::App& sub) {
+    add_scene(sub, exports.scene, export_texts);
+    sub.add_option("--solution", exports.solution, "of atrium solve or reweight, of this scene")
+        ->required()
+        ->type_name("FILE.atrium");
+    sub.add_option("-o,--output", exports.outputs,
+                   "result, may be repeated: .vtp .vtu (mesh with arrays), .glb .html (to look at)")
+        ->required()
+        ->type_name("FILE");
+    add_mode(sub, export_texts);
+    add_exports(sub, exports.exports, export_texts);
+    add_common(sub, exports.common);
   }
   void add_reweight_command(CLI::App& sub) {
     sub.add_option("solution", reweight.solution, "of atrium solve, with light groups")
@@ -450,7 +482,8 @@ struct Parser {
   void add_info_command(CLI::App& sub) {
     add_scene(sub, info.scene, info_texts);
     sub.get_option("scene")->description(
-        "scene files, put together; or one luminaire (.ies .ldt), image or solution (.atrium)");
+        "scene files, put together; or one luminaire (.ies .ldt), image, radiosity mesh (.vtp "
+        ".vtu) or solution (.atrium)");
     sub.add_flag("--json", info.json, "for programs");
   }
   void add_compare_command(CLI::App& sub) {
@@ -514,7 +547,15 @@ Command finished_command(Parser& p, const std::string& command_line) {
     if (!p.solve.solution.empty() && p.solve.solve.solver != SolverChoice::Rows)
       throw Error("--solution: only --solver rows can go on from a solution");
     p.solve.common.command_line = command_line;
+    finish(p.solve.exports, p.solve.scene, p.solve_texts);
     return p.solve;
+  }
+  if (name == "export") {
+    finish(p.exports.scene, p.export_texts);
+    finish(p.exports.exports, p.exports.scene, p.export_texts);
+    p.exports.paper_weights = p.export_texts.mode == "paper";
+    p.exports.common.command_line = command_line;
+    return p.exports;
   }
   if (name == "reweight") {
     ReweightCommand o = p.reweight;

@@ -105,7 +105,7 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
 bool radiosity_available() { return true; }
 
 RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
-                           const SolveSettings& settings, double time_limit, bool want_mesh,
+                           const SolveSettings& settings, double time_limit,
                            const scene::Solution* previous) {
   const radiosity::SolveOptions options = solve_options(settings, time_limit);
   const scene::Control control = session.control("radiosity");
@@ -119,10 +119,6 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
   if (settings.error > 0.0) run.summary.error_target = settings.error;
   for (const std::string& what : result.given_up) session.progress.warning("memory limit: " + what);
   if (settings.probes > 0) run.summary.certificate = summarise(result.certificate);
-  if (want_mesh) {
-    run.mesh =
-        radiosity::to_polygon_mesh(*loaded.scene, result.elements, result.field, loaded.basis);
-  }
   run.field = std::move(result.field);
   run.groups = std::move(result.groups);
   run.state = std::move(result.state);
@@ -137,7 +133,7 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
 
 bool radiosity_available() { return false; }
 
-RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool,
+RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double,
                            const scene::Solution*) {
   throw RuntimeFailure("radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
 }

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "options.h"
-#include "scene/mesh_io.h"
 #include "scene/solution_io.h"
 #include "scene/surface_field.h"
 #include "session.h"
@@ -14,9 +12,8 @@ namespace atrium::app {
 
 struct RadiosityRun {
   scene::SurfaceField field;
-  std::vector<scene::GroupField> groups;   ///< empty with one
-  std::vector<char> state;                 ///< to go on from
-  std::optional<scene::PolygonMesh> mesh;  ///< if asked for
+  std::vector<scene::GroupField> groups;  ///< empty with one
+  std::vector<char> state;                ///< to go on from
   SolveSummary summary;
 };
 
@@ -30,7 +27,7 @@ struct RadiosityRun {
 /// RuntimeFailure  if not available.
 [[nodiscard]] RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                                          const SolveSettings& settings, double time_limit,
-                                         bool want_mesh, const scene::Solution* previous = nullptr);
+                                         const scene::Solution* previous = nullptr);
 
 /// What the numbers of a solution mean; a solution serves only runs that say the same.
 [[nodiscard]] std::string describe_lanes(const LoadedScene& loaded, const SolveSettings& settings);

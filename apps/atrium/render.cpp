@@ -119,7 +119,7 @@ scene::SurfaceField find_field(Session& session, const RenderCommand& c, const L
     statistics.radiosity_skipped = why;
     return {};
   }
-  RadiosityRun run = run_radiosity(session, loaded, c.solve, time_limit, /*want_mesh=*/false);
+  RadiosityRun run = run_radiosity(session, loaded, c.solve, time_limit);
   statistics.solve = run.summary;
   statistics.counters += run.summary.counters;
   return std::move(run.field);

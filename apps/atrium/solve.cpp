@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "commands.h"
+#include "exports.h"
 #include "material/error.h"
 #include "radiosity_pass.h"
-#include "scene/mesh_io.h"
 #include "scene/output_file.h"
 #include "scene/solution_io.h"
 #include "statistics.h"
@@ -19,11 +19,12 @@ bool is_solution(const std::string& file) { return scene::file_ending(file) == "
 /// Before hours of work: can everything be written that was asked for?
 void check_outputs(const SolveCommand& c) {
   for (const std::string& file : c.outputs) {
-    if (!is_solution(file) && !scene::is_mesh_ending(file)) {
-      throw Error(file + ": unknown format (known: .vtp .vtu .atrium)");
-    }
+    if (!is_solution(file) && !is_export(file))
+      throw Error(file + ": unknown format (known: .vtp .vtu .glb .html .atrium)");
+    if (is_export(file)) check_export(file);
     scene::check_output(file);
   }
+  check_export_options(c.exports, c.outputs);
   if (!c.common.stats.empty()) scene::check_output(c.common.stats);
 }
 
@@ -44,7 +45,6 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   std::string why;
   if (!radiosity_needed(loaded.features, why)) throw Error("solve: nothing to solve: " + why);
 
-  const bool want_mesh = !std::all_of(c.outputs.begin(), c.outputs.end(), is_solution);
   SolveSettings settings = c.solve;
   settings.keep_state = std::any_of(c.outputs.begin(), c.outputs.end(), is_solution);
   std::optional<scene::Solution> previous;
@@ -54,8 +54,8 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
       throw Error(c.solution +
                   ": keeps nothing to go on from (stopped too early, or not by solve)");
   }
-  RadiosityRun run = run_radiosity(session, loaded, settings, c.solve.time_limit, want_mesh,
-                                   previous ? &*previous : nullptr);
+  RadiosityRun run =
+      run_radiosity(session, loaded, settings, c.solve.time_limit, previous ? &*previous : nullptr);
 
   if (c.solve.error > 0.0 && run.summary.stopped_by != "error")
     session.progress.warning("the error of " + std::to_string(100.0 * c.solve.error) +
@@ -68,24 +68,18 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
   statistics.seed = c.solve.seed;
   statistics.solve = run.summary;
   statistics.counters = run.summary.counters;
-  if (run.mesh) {
-    run.mesh->field_data["version"] = std::string("atrium ") + ATRIUM_VERSION;
-    run.mesh->field_data["command"] = c.common.command_line;
-  }
   for (const std::string& file : c.outputs) {
-    if (is_solution(file)) {
-      scene::write_solution({.field = run.field,
-                             .groups = run.groups,
-                             .state = run.state,
-                             .scene_hash = scene::hash_scene(*loaded.scene),
-                             .basis = describe_lanes(loaded, c.solve),
-                             .options = describe(c.solve)},
-                            file);
-    } else {
-      scene::write_polygon_mesh(*run.mesh, file);
-    }
+    if (!is_solution(file)) continue;
+    scene::write_solution({.field = run.field,
+                           .groups = run.groups,
+                           .state = run.state,
+                           .scene_hash = scene::hash_scene(*loaded.scene),
+                           .basis = describe_lanes(loaded, c.solve),
+                           .options = describe(c.solve)},
+                          file);
     session.progress.note("wrote " + file);
   }
+  write_exports(session, {loaded, run.field, run.groups}, c.outputs, c.exports);
   write_statistics(session, loaded, statistics);
   return session.interrupted() ? kInterrupted : 0;
 }

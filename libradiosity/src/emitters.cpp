@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/vertex_colors.h"
+
 namespace atrium::radiosity {
 
 template <int N>
@@ -14,7 +16,9 @@ std::vector<Emitter<N>> find_emitters(const Problem<N>& problem) {
     const scene::ObjectId id(o);
     const material::Material& m = scene.material_of(id);
     if (!m.emissive()) continue;
-    if (m.emission_texture.texture.valid()) return {};
+    if (m.emission_texture.texture.valid() ||
+        (scene::vertex_colors_emit(m) && !scene.mesh_of(id).colors.empty()))
+      return {};
     for (std::uint32_t t = 0; t < scene.mesh_of(id).triangles.size(); ++t)
       for (const bool back : {false, true}) {
         if (back && !m.emits_both_sides) continue;

@@ -1,10 +1,10 @@
+#include "radiosity/export_mesh.h"
+
 #include <algorithm>
 #include <numbers>
+#include <string_view>
 
-#include "joined_mesh.h"
-#include "material/bsdf.h"
-#include "radiosity/corners.h"
-#include "radiosity/elements.h"
+#include "joined_field.h"
 #include "scene/parallel.h"
 
 namespace atrium::radiosity {
@@ -13,316 +13,263 @@ namespace {
 using scene::PolygonMesh;
 using scene::Scene;
 using scene::SurfaceField;
+using Type = PolygonMesh::Type;
+using Arrays = std::vector<PolygonMesh::Array>;
 
 constexpr double kLumensPerWatt = 179.0;  // white light given in watts
 
-/// What the file holds for a cell or a corner; RGB.
-struct Record {
-  struct OneSide {
-    Rgb direct, caustic, indirect, irradiance, radiosity;
-  };
-  OneSide front, back;
-};
+/// RGB arrays of both sides, at their places in a list of arrays.
+struct ColorArrays {
+  std::array<std::size_t, 2> index{};
 
-/// Diffuse properties of one side at a point.
-template <int N>
-struct Surface {
-  Spectrum<N> reflectance, transmittance, exitance;
-  bool coupled = false;
-};
-
-/// Irradiance of one side at a cell or corner, and what leaves coupled materials' bodies.
-template <int N>
-struct Light {
-  Spectrum<N> direct, caustic, indirect, body;
-  [[nodiscard]] Spectrum<N> total() const { return direct + caustic + indirect; }
-};
-
-/// Values of all quantities with the same index.
-struct Values {
-  SurfaceField::Quantities irradiance, body;
-
-  template <int N>
-  [[nodiscard]] Light<N> at(std::size_t side) const {
-    const auto read = [side](const std::vector<float>& array) {
-      Spectrum<N> v;
-      if (!array.empty())
-        for (int k = 0; k < N; ++k) v[k] = array[side * N + static_cast<std::size_t>(k)];
-      return v;
-    };
-    return {read(irradiance.direct), read(irradiance.caustic), read(irradiance.indirect),
-            read(body.direct) + read(body.caustic) + read(body.indirect)};
+  ColorArrays(Arrays& list, const std::string& name, const std::string& group,
+              const std::string& unit, std::size_t tuples) {
+    for (const std::size_t side : {0U, 1U}) {
+      index[side] = list.size();
+      list.push_back({name + (side == 1 ? "_back" : "") + group, 3, std::vector<float>(3 * tuples),
+                      Type::Float32, unit});
+    }
+  }
+  void set(Arrays& list, std::size_t tuple, std::size_t side, const Rgb& value) const {
+    std::copy(value.lane.begin(), value.lane.end(),
+              list[index[side]].values.begin() + static_cast<std::ptrdiff_t>(3 * tuple));
   }
 };
 
-SurfaceField::Quantities at_corners(const SurfaceField& field, const CellCorners& corners,
-                                    const SurfaceField::Quantities& q) {
-  return {corner_values(field, corners, q.direct), corner_values(field, corners, q.caustic),
-          corner_values(field, corners, q.indirect)};
+/// Ends of array names for groups: their names, with "_" for what XML or a path expression gives a
+/// meaning, and a number where that makes two alike.
+std::vector<std::string> group_suffixes(std::span<const scene::GroupField> groups) {
+  std::vector<std::string> list;
+  for (const scene::GroupField& g : groups) {
+    std::string name = "." + g.name;
+    for (char& c : name)
+      if (static_cast<unsigned char>(c) < 0x20 ||
+          std::string_view("\"<>&'").find(c) != std::string_view::npos)
+        c = '_';
+    std::string distinct = name;
+    for (int i = 2; std::find(list.begin(), list.end(), distinct) != list.end(); ++i)
+      distinct = name + "_" + std::to_string(i);
+    list.push_back(distinct);
+  }
+  return list;
 }
+
+/// The arrays that cells and points have alike, for the field or for one group.
+struct LightArrays {
+  std::optional<ColorArrays> direct, caustic, indirect;  // the field's only
+  ColorArrays irradiance, radiosity;
+
+  static LightArrays of_field(Arrays& list, const std::string& unit, std::size_t tuples) {
+    const auto add = [&](const char* name) { return ColorArrays(list, name, "", unit, tuples); };
+    std::optional<ColorArrays> direct = add("irradiance_direct");
+    std::optional<ColorArrays> caustic = add("irradiance_caustic");
+    std::optional<ColorArrays> indirect = add("irradiance_indirect");
+    return {direct, caustic, indirect, add("irradiance"), add("radiosity")};
+  }
+  static LightArrays of_group(Arrays& list, const std::string& suffix, const std::string& unit,
+                              std::size_t tuples) {
+    return {{},
+            {},
+            {},
+            ColorArrays(list, "irradiance", suffix, unit, tuples),
+            ColorArrays(list, "radiosity", suffix, unit, tuples)};
+  }
+};
 
 template <int N>
 class Exporter {
  public:
   Exporter(const Scene& scene, const Elements& elements, const SurfaceField& field,
-           const material::SpectralBasis& basis)
+           const material::SpectralBasis& basis, std::span<const scene::GroupField> groups)
       : scene_(scene),
         elements_(elements),
         field_(field),
         basis_(basis),
-        joined_(join_pieces(scene, elements)),
-        cells_(cell_corners(field)),
-        element_values_{field.irradiance, field.body_irradiance},
-        corner_values_{at_corners(field, cells_, field.irradiance),
-                       at_corners(field, cells_, field.body_irradiance)} {
-    for (const material::Material& m : scene.materials) {
-      materials_.push_back(material::resolve_material<N>(m, basis));
-      emission_.push_back(m.emission_spectral_watts ? basis.resolve_emission<N>(m.emission)
-                                                    : basis.resolve<N>(m.emission));
-    }
-  }
+        groups_(groups),
+        surfaces_of_(scene, basis, groups),
+        joined_(scene, elements, field, groups) {}
 
   PolygonMesh build() {
     collect_geometry();
     evaluate_polygons();
     evaluate_points();
     add_scalars();
-    mesh_.field_data = {
-        {"unit", field_.unit},   {"illuminance_unit", "lx"},
-        {"length_unit", "m"},    {"version", "1"},
-        {"generator", "Atrium"}, {"emission", "exitance of the front, included in radiosity"}};
+    add_names();
+    add_cameras();
     return std::move(mesh_);
   }
 
  private:
-  struct Sides {
-    Surface<N> front, back;
-  };
-
   void collect_geometry() {
-    std::vector<std::uint32_t> element_of(elements_.pieces.size());
-    for (std::uint32_t e = 0; e + 1 < elements_.first_piece.size(); ++e)
-      for (std::uint32_t p = elements_.first_piece[e]; p < elements_.first_piece[e + 1]; ++p)
-        element_of[p] = e;
-    for (std::size_t k = 0; k < joined_.polygon_count(); ++k) {
-      element_of_.push_back(element_of[joined_.piece[k]]);
-      mesh_.polygon_sizes.push_back(joined_.first_corner[k + 1] - joined_.first_corner[k]);
-    }
-    mesh_.polygon_points = joined_.point;
-    for (const Vec3f& p : joined_.position)
-      mesh_.points.push_back(p.cast<double>() + scene_.origin);
+    const JoinedMesh& joined = joined_.mesh();
+    for (std::size_t k = 0; k < joined.polygon_count(); ++k)
+      mesh_.polygon_sizes.push_back(joined.first_corner[k + 1] - joined.first_corner[k]);
+    mesh_.polygon_points = joined.point;
+    for (const Vec3f& p : joined.position) mesh_.points.push_back(p.cast<double>() + scene_.origin);
+  }
+
+  /// The field's arrays, then those of each group.
+  std::vector<LightArrays> light_arrays(Arrays& list, std::size_t tuples) const {
+    std::vector<LightArrays> all{LightArrays::of_field(list, field_.unit, tuples)};
+    for (const std::string& suffix : group_suffixes(groups_))
+      all.push_back(LightArrays::of_group(list, suffix, field_.unit, tuples));
+    return all;
   }
 
   void evaluate_polygons() {
-    const std::size_t count = joined_.polygon_count();
+    const std::size_t count = joined_.mesh().polygon_count();
+    Arrays& list = mesh_.cell_arrays;
+    const std::vector<LightArrays> arrays = light_arrays(list, count);
+    const ColorArrays reflectance(list, "reflectance", "", "1", count);
+    const ColorArrays emission(list, "emission", "", field_.unit, count);
+    const std::size_t lux = add_lux(list, count);
     surfaces_.resize(count);
-    std::vector<Record> records(count);
-    std::vector<Rgb> reflectance(count);
-    std::vector<Rgb> emission(count);
     scene::parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+      std::vector<BothLights<N>> light(joined_.source_count());
       for (std::size_t k = begin; k < end; ++k) {
-        const ElementPiece piece = elements_.pieces[joined_.piece[k]];
-        const Vec2f uv = barycentric(scene_, piece, centre(piece));
-        const scene::SurfacePoint at =
-            scene::surface_point(scene_, piece.object, piece.triangle, uv.x(), uv.y());
-        surfaces_[k] = {surface(at, true), surface(at, false)};
-        reflectance[k] = basis_.to_rgb<N>(surfaces_[k].front.reflectance);
-        emission[k] = basis_.to_rgb<N>(surfaces_[k].front.exitance);
-        const std::size_t side = 2 * std::size_t{element_of_[k]};
-        records[k] =
-            record({element_values_.at<N>(side), element_values_.at<N>(side + 1)}, surfaces_[k]);
+        const scene::SurfacePoint at = joined_.centre(k);
+        surfaces_[k] = {surfaces_of_.side(at, true), surfaces_of_.side(at, false)};
+        for (std::size_t s = 0; s < light.size(); ++s) light[s] = joined_.at_polygon(k, s);
+        for (const std::size_t side : {0U, 1U}) {
+          reflectance.set(list, k, side, basis_.to_rgb<N>(surfaces_[k][side].reflectance));
+          emission.set(list, k, side, basis_.to_rgb<N>(surfaces_[k][side].exitance));
+        }
+        set_light(list, arrays, lux, k, light, surfaces_[k], surfaces_of_.group(at.object));
       }
     });
-    add_records(records, mesh_.cell_arrays);
-    add_rgb(mesh_.cell_arrays, "reflectance", reflectance);
-    add_rgb(mesh_.cell_arrays, "emission", emission);
-  }
-
-  static Vec3f centre(const ElementPiece& piece) {
-    Vec3f sum = Vec3f::Zero();
-    for (const Vec3f& c : piece.corners) sum += c;
-    return sum / static_cast<float>(piece.corners.size());
   }
 
   void evaluate_points() {
-    std::vector<std::uint32_t> polygon_of(joined_.point.size());
-    for (std::uint32_t k = 0; k < joined_.polygon_count(); ++k)
-      for (std::uint32_t c = joined_.first_corner[k]; c < joined_.first_corner[k + 1]; ++c)
-        polygon_of[c] = k;
-    std::vector<std::vector<std::uint32_t>> users(mesh_.points.size());  // polygons, ascending
-    for (std::size_t c = 0; c < polygon_of.size(); ++c)
-      users[joined_.point[c]].push_back(polygon_of[c]);
-    std::vector<Record> records(users.size());
-    scene::parallel_for(users.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = mesh_.points.size();
+    Arrays& list = mesh_.point_arrays;
+    const std::vector<LightArrays> arrays = light_arrays(list, count);
+    const std::size_t lux = add_lux(list, count);
+    scene::parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+      std::vector<BothLights<N>> light;
       for (std::size_t p = begin; p < end; ++p) {
-        const std::array<Light<N>, 2> light{light_at(joined_.position[p], users[p], 0),
-                                            light_at(joined_.position[p], users[p], 1)};
-        records[p] = record(light, mean_surface(users[p]));
+        joined_.at_point(p, light);
+        const std::uint32_t first = joined_.polygons_at(p).front();
+        set_light(list, arrays, lux, p, light, mean_surface<N>(surfaces_, joined_.polygons_at(p)),
+                  surfaces_of_.group(object_of(first)));
       }
     });
-    add_records(records, mesh_.point_arrays);
   }
 
-  /// Mean over the facets that meet, each by the first of its elements whose side is known.
-  Light<N> light_at(const Vec3f& position, const std::vector<std::uint32_t>& polygons,
-                    std::size_t side) const {
-    Light<N> sum;
-    std::vector<std::uint32_t> facets;
-    const auto add = [&](std::uint32_t e) {
-      const std::array<float, 4> weight = corner_weights(field_, e, position);
-      for (std::size_t k = 0; k < 4; ++k)
-        accumulate(sum, corner_values_.at<N>(2 * std::size_t{cells_.of_element[e][k]} + side),
-                   weight[k]);
-    };
-    for (const std::uint32_t k : polygons) {
-      const std::uint32_t e = element_of_[k];
-      const std::uint32_t facet = field_.element_facet[e];
-      if (field_.valid[2 * std::size_t{e} + side] == 0 ||
-          std::find(facets.begin(), facets.end(), facet) != facets.end())
-        continue;
-      facets.push_back(facet);
-      add(e);
-    }
-    if (facets.empty()) {
-      add(element_of_[polygons.front()]);
-      return sum;
-    }
-    Light<N> mean;
-    accumulate(mean, sum, 1.0f / static_cast<float>(facets.size()));
-    return mean;
+  /// \return the array's place in the list.
+  std::size_t add_lux(Arrays& list, std::size_t count) const {
+    list.push_back({"illuminance_lux", 1, std::vector<float>(count), Type::Float32, "lx"});
+    return list.size() - 1;
   }
 
-  static void accumulate(Light<N>& sum, const Light<N>& light, float weight) {
-    sum.direct += weight * light.direct;
-    sum.caustic += weight * light.caustic;
-    sum.indirect += weight * light.indirect;
-    sum.body += weight * light.body;
-  }
-
-  Sides mean_surface(const std::vector<std::uint32_t>& polygons) const {
-    Sides mean;
-    const float share = 1.0f / static_cast<float>(polygons.size());
-    for (const std::uint32_t k : polygons)
-      for (const auto member : {&Sides::front, &Sides::back}) {
-        const Surface<N>& s = surfaces_[k].*member;
-        Surface<N>& m = mean.*member;
-        m.reflectance += share * s.reflectance;
-        m.transmittance += share * s.transmittance;
-        m.exitance += share * s.exitance;
-        m.coupled = s.coupled;  // of the object's material
+  void set_light(Arrays& list, const std::vector<LightArrays>& arrays, std::size_t lux,
+                 std::size_t tuple, const std::vector<BothLights<N>>& light,
+                 const BothSurfaces<N>& surface, std::uint32_t emission_group) const {
+    for (std::size_t s = 0; s < arrays.size(); ++s) {
+      const LightArrays& a = arrays[s];
+      const auto leaving = reflected<N>(light[s], surface, joined_.body_known());
+      const bool emits = s == 0 || s == 1 + std::size_t{emission_group};
+      for (const std::size_t side : {0U, 1U}) {
+        const SideLight<N>& in = light[s][side];
+        const auto set = [&](const ColorArrays& array, const Spectrum<N>& v) {
+          array.set(list, tuple, side, basis_.to_rgb<N>(v));
+        };
+        if (a.direct) {
+          set(*a.direct, in.direct);
+          set(*a.caustic, in.caustic);
+          set(*a.indirect, in.indirect);
+        }
+        set(a.irradiance, in.total());
+        set(a.radiosity, emits ? leaving[side] + surface[side].exitance : leaving[side]);
       }
-    return mean;
+    }
+    const double scale = scene_.unit == scene::RadianceUnit::Nit ? 1.0 : kLumensPerWatt;
+    list[lux].values[tuple] =
+        static_cast<float>(scale) * luminance(basis_.to_rgb<N>(light[0][0].total()));
   }
 
-  Spectrum<N> texture(const material::TextureSlot& slot, const Vec2f& uv) const {
-    if (!slot.texture.valid()) return Spectrum<N>::one();
-    return basis_.from_rgb<N>(scene_.textures[slot.texture.value].rgb(slot.transform(uv)));
-  }
-
-  Surface<N> surface(const scene::SurfacePoint& at, bool front) const {
-    const auto& resolved = materials_[at.material.value];
-    const material::Material& m = *resolved.source;
-    Spectrum<N> body = texture(m.body_texture, at.uv);
-    body *= basis_.from_rgb<N>(make_rgb(at.color.x(), at.color.y(), at.color.z()));
-    const material::Bsdf<N> bsdf(resolved, front, body, Spectrum<N>::one(), 1.0f);
-    Surface<N> s;
-    s.reflectance =
-        bsdf.coupled() ? bsdf.diffuse_albedo() : bsdf.diffuse_reflectance(Vec3f(0.0f, 0.0f, 1.0f));
-    s.transmittance = bsdf.diffuse_transmittance();
-    s.coupled = bsdf.coupled();
-    if (m.emissive() && (front || m.emits_both_sides))
-      s.exitance = emission_[at.material.value] * texture(m.emission_texture, at.uv) *
-                   std::numbers::pi_v<float>;
-    return s;
-  }
-
-  Record record(const std::array<Light<N>, 2>& light, const Sides& surface) const {
-    const bool body = surface.front.coupled && !field_.body_irradiance.direct.empty();
-    const Spectrum<N> front = body ? light[0].body : light[0].total();
-    const Spectrum<N> back = body ? light[1].body : light[1].total();
-    return {one_side(light[0], surface.front, front, back),
-            one_side(light[1], surface.back, back, front)};
-  }
-
-  Record::OneSide one_side(const Light<N>& light, const Surface<N>& surface, const Spectrum<N>& own,
-                           const Spectrum<N>& other) const {
-    const auto rgb = [&](const Spectrum<N>& v) { return basis_.to_rgb<N>(v); };
-    return {rgb(light.direct), rgb(light.caustic), rgb(light.indirect), rgb(light.total()),
-            rgb(surface.exitance + surface.reflectance * own + surface.transmittance * other)};
-  }
-
-  static void add_rgb(std::vector<PolygonMesh::Array>& arrays, const std::string& name,
-                      const std::vector<Rgb>& values) {
-    PolygonMesh::Array a{name, 3, {}};
-    a.values.reserve(values.size() * 3);
-    for (const Rgb& v : values) a.values.insert(a.values.end(), v.lane.begin(), v.lane.end());
-    arrays.push_back(std::move(a));
-  }
-
-  void add_records(const std::vector<Record>& records,
-                   std::vector<PolygonMesh::Array>& arrays) const {
-    using OneSide = Record::OneSide;
-    const std::pair<const char*, Rgb OneSide::*> members[] = {
-        {"irradiance_direct", &OneSide::direct},
-        {"irradiance_caustic", &OneSide::caustic},
-        {"irradiance_indirect", &OneSide::indirect},
-        {"irradiance", &OneSide::irradiance},
-        {"radiosity", &OneSide::radiosity}};
-    for (const auto& [name, member] : members)
-      for (const bool back : {false, true}) {
-        std::vector<Rgb> values;
-        values.reserve(records.size());
-        for (const Record& r : records) values.push_back((back ? r.back : r.front).*member);
-        add_rgb(arrays, std::string(name) + (back ? "_back" : ""), values);
-      }
-    PolygonMesh::Array lux{"illuminance_lux", 1, {}};
-    const auto scale =
-        static_cast<float>(scene_.unit == scene::RadianceUnit::Nit ? 1.0 : kLumensPerWatt);
-    for (const Record& r : records) lux.values.push_back(scale * luminance(r.front.irradiance));
-    arrays.push_back(std::move(lux));
+  scene::ObjectId object_of(std::size_t polygon) const {
+    return elements_.pieces[joined_.mesh().piece[polygon]].object;
   }
 
   void add_scalars() {
-    const auto add = [&](const char* name, auto&& value) {
-      PolygonMesh::Array a{name, 1, {}};
-      for (std::size_t k = 0; k < joined_.polygon_count(); ++k)
-        a.values.push_back(static_cast<float>(value(k)));
+    const auto add = [&](const char* name, Type type, const std::string& unit, auto&& value) {
+      PolygonMesh::Array a{name, 1, {}, type, unit};
+      const std::size_t count = joined_.mesh().polygon_count();
+      a.values.reserve(count);
+      for (std::size_t k = 0; k < count; ++k) a.values.push_back(static_cast<float>(value(k)));
       mesh_.cell_arrays.push_back(std::move(a));
     };
-    const auto object = [&](std::size_t p) {
-      return elements_.pieces[joined_.piece[p]].object.value;
+    const auto element = [&](std::size_t k) { return std::size_t{joined_.element(k)}; };
+    add("stderr", Type::Float32, field_.unit,
+        [&](std::size_t k) { return field_.standard_error[2 * element(k)]; });
+    add("stderr_back", Type::Float32, field_.unit,
+        [&](std::size_t k) { return field_.standard_error[2 * element(k) + 1]; });
+    add("element_id", Type::Int32, "", element);
+    add("level", Type::UInt8, "", [&](std::size_t k) { return field_.element_level[element(k)]; });
+    add("material_id", Type::Int32, "",
+        [&](std::size_t k) { return scene_.objects[object_of(k).value].material.value; });
+    add("object_id", Type::Int32, "", [&](std::size_t k) { return object_of(k).value; });
+    add("front_valid", Type::UInt8, "", [&](std::size_t k) { return joined_.valid(k, 0) ? 1 : 0; });
+    add("back_valid", Type::UInt8, "", [&](std::size_t k) { return joined_.valid(k, 1) ? 1 : 0; });
+  }
+
+  void add_names() {
+    const auto names = [](const auto& things) {
+      std::vector<std::string> list;
+      for (const auto& thing : things) list.push_back(thing.name);
+      return list;
     };
-    add("stderr", [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U]; });
-    add("stderr_back",
-        [&](std::size_t p) { return field_.standard_error[element_of_[p] * 2U + 1U]; });
-    add("element_id", [&](std::size_t p) { return element_of_[p]; });
-    add("level", [&](std::size_t p) { return field_.element_level[element_of_[p]]; });
-    add("material_id", [&](std::size_t p) { return scene_.objects[object(p)].material.value; });
-    add("object_id", object);
-    add("front_valid", [&](std::size_t p) { return field_.valid[element_of_[p] * 2U]; });
-    add("back_valid", [&](std::size_t p) { return field_.valid[element_of_[p] * 2U + 1U]; });
+    mesh_.field_data = {{"unit", {field_.unit}},
+                        {"illuminance_unit", {"lx"}},
+                        {"length_unit", {"m"}},
+                        {"generator", {"Atrium"}},
+                        {"emission", {"exitance, included in radiosity"}},
+                        {"material_names", names(scene_.materials)},
+                        {"object_names", names(scene_.objects)},
+                        {"light_group_names", names(groups_)}};
+  }
+
+  /// A camera looks along `direction`; view_angle 0: parallel, then view_height says how much it
+  /// sees.
+  void add_cameras() {
+    PolygonMesh::FieldArray position{"camera_position", 3, {}},
+        direction{"camera_direction", 3, {}}, up{"camera_up", 3, {}},
+        angle{"camera_view_angle_deg", 1, {}}, height{"camera_view_height", 1, {}};
+    std::vector<std::string>& names = mesh_.field_data["camera_names"];
+    for (const scene::Camera& c : scene_.cameras) {
+      if (c.kind == scene::Camera::Kind::Panorama) continue;  // no view of a window
+      const bool parallel = c.kind == scene::Camera::Kind::Orthographic;
+      names.push_back(c.name);
+      const auto append = [](PolygonMesh::FieldArray& to, const Vec3d& v) {
+        to.values.insert(to.values.end(), v.data(), v.data() + 3);
+      };
+      append(position, c.to_scene.translation() + scene_.origin);
+      append(direction, -c.to_scene.linear().col(2));
+      append(up, c.to_scene.linear().col(1));
+      angle.values.push_back(parallel ? 0.0 : c.yfov * 180.0 / std::numbers::pi);
+      height.values.push_back(parallel ? c.height : 0.0);
+    }
+    mesh_.field_arrays = {position, direction, up, angle, height};
   }
 
   const Scene& scene_;
   const Elements& elements_;
   const SurfaceField& field_;
   material::SpectralBasis basis_;
-  std::vector<material::ResolvedMaterial<N>> materials_;
-  std::vector<Spectrum<N>> emission_;
-  JoinedMesh joined_;
-  CellCorners cells_;
-  Values element_values_, corner_values_;
-  std::vector<std::uint32_t> element_of_;  // by polygon
-  std::vector<Sides> surfaces_;            // by polygon, at its centre
+  std::span<const scene::GroupField> groups_;
+  SurfaceReader<N> surfaces_of_;
+  JoinedField<N> joined_;
+  std::vector<BothSurfaces<N>> surfaces_;  // by polygon, at its centre
   PolygonMesh mesh_;
 };
 
 }  // namespace
 
 PolygonMesh to_polygon_mesh(const Scene& scene, const Elements& elements, const SurfaceField& field,
-                            const material::SpectralBasis& basis) {
+                            const material::SpectralBasis& basis,
+                            std::span<const scene::GroupField> groups) {
   return with_lanes(basis.lanes(), [&](auto lanes) {
-    return Exporter<lanes()>(scene, elements, field, basis).build();
+    return Exporter<lanes()>(scene, elements, field, basis, groups).build();
   });
 }
 

@@ -31,10 +31,12 @@ class Welder {
         for (std::int64_t x = low[0]; x <= high[0]; ++x) {
           const auto it = voxels_.find({x, y, z});
           if (it == voxels_.end()) continue;
-          for (const std::uint32_t k : it->second)
+          for (std::uint32_t k = it->second; k != kNone; k = next_[k])
             if ((places_[k].cast<double>() - p).norm() <= tolerance_) return k;
         }
-    voxels_[key(p)].push_back(static_cast<std::uint32_t>(places_.size()));
+    const auto [first, added] = voxels_.try_emplace(key(p), kNone);
+    next_.push_back(first->second);
+    first->second = static_cast<std::uint32_t>(places_.size());
     places_.push_back(point);
     return static_cast<std::uint32_t>(places_.size() - 1);
   }
@@ -59,8 +61,31 @@ class Welder {
   }
 
   double tolerance_;
-  std::unordered_map<Key, std::vector<std::uint32_t>, Hash> voxels_;
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  std::unordered_map<Key, std::uint32_t, Hash> voxels_;  // the place that came last
+  std::vector<std::uint32_t> next_;  // by place: one of the same voxel, or kNone
   std::vector<Vec3f> places_;
+};
+
+/// Edges that two polygons pass in opposite ways: nothing lies between their ends that either would
+/// have to meet.
+class SharedEdges {
+ public:
+  explicit SharedEdges(const std::vector<std::vector<std::uint32_t>>& polygons) {
+    for (const std::vector<std::uint32_t>& corners : polygons)
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        passed_.push_back(key(corners[i], corners[(i + 1) % corners.size()]));
+    std::sort(passed_.begin(), passed_.end());
+  }
+  [[nodiscard]] bool contains(std::uint32_t from, std::uint32_t to) const {
+    return std::binary_search(passed_.begin(), passed_.end(), key(to, from));
+  }
+
+ private:
+  static std::uint64_t key(std::uint32_t from, std::uint32_t to) {
+    return std::uint64_t{from} << 32U | to;
+  }
+  std::vector<std::uint64_t> passed_;
 };
 
 /// Places inside an edge, in the order from its start.
@@ -151,6 +176,7 @@ class Joiner {
     for (const Vec3f& p : places) boxes.emplace_back(p);
     Eigen::KdBVH<float, 3, std::uint32_t> tree;
     tree.init(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
+    const SharedEdges shared(polygons);
     for (std::size_t k = 0; k < polygons.size(); ++k) {
       const std::vector<std::uint32_t>& corners = polygons[k];
       const std::size_t first = place_.size();
@@ -158,6 +184,7 @@ class Joiner {
         OnEdge edge{places, corners[i], corners[(i + 1) % corners.size()], tolerance, {}};
         if (edge.from == edge.to) continue;
         place_.push_back(edge.from);
+        if (shared.contains(edge.from, edge.to)) continue;
         Eigen::BVIntersect(tree, edge);
         std::sort(edge.found.begin(), edge.found.end());
         for (const auto& [t, place] : edge.found) place_.push_back(place);

@@ -8,6 +8,7 @@
 #include "polygon.h"
 #include "radiosity/form_factor.h"
 #include "scene/spherical_triangle.h"
+#include "scene/vertex_colors.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -123,7 +124,9 @@ PolygonLights<N>::PolygonLights(const scene::Shading<N>& shading, std::size_t li
     std::size_t last = first;
     while (last < surfaces.size() && surfaces[last].object == surfaces[first].object) ++last;
     const material::Material& m = scene.material_of(surfaces[first].object);
-    if (m.emission_texture.texture.valid() || m.alpha_texture.texture.valid()) {
+    const bool colored =
+        scene::vertex_colors_emit(m) && !scene.mesh_of(surfaces[first].object).colors.empty();
+    if (colored || m.emission_texture.texture.valid() || m.alpha_texture.texture.valid()) {
       covers_all_ = false;
       first = last;
       continue;

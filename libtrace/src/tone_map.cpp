@@ -41,10 +41,12 @@ double automatic_ev(const scene::Image& image) {
   return log_mean - std::log2(kMiddleGrey * kSaturation);
 }
 
+double white_at(double ev) { return kSaturation * std::exp2(ev); }
+
 scene::Image tone_map(const scene::Image& image, const ToneMapOptions& options) {
   const RgbPlanes rgb(image);
   const double ev = options.ev ? *options.ev : automatic_ev(image);
-  const double scale = std::exp2(-ev) / kSaturation;
+  const double scale = 1.0 / white_at(ev);
   scene::Image result;
   result.width = image.width;
   result.height = image.height;

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "scene/mesh_io.h"
 #include "scene/ray_query.h"
 #include "scene/surface_field.h"
 
@@ -124,14 +123,5 @@ struct Refined {
 /// edge the second is kNone; kNone also where there is no surface.
 using EdgeNeighbours = std::array<std::uint32_t, 8>;
 [[nodiscard]] std::vector<EdgeNeighbours> edge_neighbours(const scene::SurfaceField& layout);
-
-/// The solution as polygons with the arrays of the mesh files (irradiance_direct, ..., radiosity).
-/// Cells hold the elements' values, points those of the elements' corners (corners.h). No cracks
-/// within an object: a place in the middle of a longer edge is a corner of that polygon, too.
-/// Points are shared within a facet and where a smooth surface goes on in another one.
-[[nodiscard]] scene::PolygonMesh to_polygon_mesh(const scene::Scene& scene,
-                                                 const Elements& elements,
-                                                 const scene::SurfaceField& field,
-                                                 const material::SpectralBasis& basis);
 
 }  // namespace atrium::radiosity

@@ -25,6 +25,9 @@ struct ToneMapOptions {
 /// std::invalid_argument  without R, G, B.
 [[nodiscard]] double automatic_ev(const scene::Image& image);
 
+/// The luminance that becomes 1 before the curve, 1.2 * 2^ev [unit of the scene].
+[[nodiscard]] double white_at(double ev);
+
 /// Linear image to display values: exposure, curve per channel, sRGB encoding.
 /// Returns R, G, B in [0, 1], ready for 8 bits; non-finite pixels become 0.
 /// \throws std::invalid_argument  without R, G, B.

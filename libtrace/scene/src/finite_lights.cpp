@@ -7,6 +7,7 @@
 #include "directions.h"
 #include "scene/light_groups.h"
 #include "scene/spherical_triangle.h"
+#include "scene/vertex_colors.h"
 
 namespace atrium::scene {
 namespace {
@@ -145,7 +146,13 @@ LightBounds FiniteLights<N>::bounds_of(const Positional& p) const {
 
 template <int N>
 Spectrum<N> FiniteLights<N>::triangle_radiance(const EmissiveTriangle& t) const {
-  return emission_of_material_[scene_->objects[t.object.value].material.value];
+  const Spectrum<N>& emission =
+      emission_of_material_[scene_->objects[t.object.value].material.value];
+  const Mesh& mesh = scene_->mesh_of(t.object);
+  if (mesh.colors.empty() || !vertex_colors_emit(scene_->material_of(t.object))) return emission;
+  Vec3f mean = Vec3f::Zero();
+  for (const std::uint32_t corner : mesh.triangles[t.triangle]) mean += mesh.colors[corner] / 3.0f;
+  return emission * basis_.template from_rgb<N>(make_rgb(mean.x(), mean.y(), mean.z()));
 }
 
 template <int N>
@@ -189,6 +196,8 @@ Spectrum<N> FiniteLights<N>::intensity_towards(const Positional& p, const Vec3f&
 template <int N>
 Spectrum<N> FiniteLights<N>::radiance_at(const SurfacePoint& point) const {
   Spectrum<N> r = emission_of_material_[point.material.value];
+  if (vertex_colors_emit(scene_->materials[point.material.value]) && !point.color.isOnes(0.0f))
+    r *= basis_.template from_rgb<N>(make_rgb(point.color.x(), point.color.y(), point.color.z()));
   const material::TextureSlot& slot = scene_->materials[point.material.value].emission_texture;
   if (slot.texture.valid() && !r.is_zero())
     r *= basis_.template from_rgb<N>(

@@ -1,4 +1,4 @@
-// The only source that compiles the glTF parser (and the JSON library below it).
+// The only source that compiles the glTF parser and writer (and the JSON library below it).
 #define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "gltf_document.h"
+
+#include <sstream>
 
 #include "import_util.h"
 #include "material/error.h"
@@ -122,6 +124,15 @@ GltfDocument load_gltf(const std::filesystem::path& file) {
   if (!warning.empty()) document.warnings.push_back(document.at(one_line(warning)));
   if (!error.empty()) document.warnings.push_back(document.at(one_line(error)));
   return document;
+}
+
+std::vector<std::uint8_t> encode_gltf(tinygltf::Model& model) {
+  std::ostringstream stream;
+  tinygltf::TinyGLTF writer;
+  if (!writer.WriteGltfSceneToStream(&model, stream, /*prettyPrint=*/false, /*writeBinary=*/true))
+    throw RuntimeFailure("glTF cannot be encoded");
+  const std::string text = std::move(stream).str();
+  return {text.begin(), text.end()};
 }
 
 }  // namespace atrium::scene

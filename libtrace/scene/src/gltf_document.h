@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <tiny_gltf.h>
 
@@ -22,5 +24,9 @@ struct GltfDocument {
 /// Reads .gltf and .glb with external buffers and data URIs. Images stay encoded.
 /// \throws Error for anything that is no glTF 2.0 or lacks a buffer.
 [[nodiscard]] GltfDocument load_gltf(const std::filesystem::path& file);
+
+/// A model as a binary file: its first buffer, and images that are views of it.
+/// \throws RuntimeFailure.
+[[nodiscard]] std::vector<std::uint8_t> encode_gltf(tinygltf::Model& model);
 
 }  // namespace atrium::scene

@@ -289,7 +289,10 @@ void Mapper::map_thin_transmission(Material& m) {
 }
 
 /// KHR_materials_unlit shows a colour that no light changes: it emits it and reflects nothing.
+/// Vertex colours multiply it (vertex_colors_emit()).
 void Mapper::map_unlit(Material& m) {
+  m.k_df = 0.0;
+  m.k_rg = 0.0;
   m.body_reflectance = 0.0;
   m.emission = spectral(p_.base * static_cast<float>(options_.emissive_nits_per_unit));
   m.emission_texture = slot(source_.pbrMetallicRoughness.baseColorTexture, true);

@@ -117,6 +117,14 @@ material::Texture read_texture(const fs::path& file) {
   return decode_texture(read_bytes(file), file.string());
 }
 
+std::vector<std::uint8_t> encode_texture(const material::Texture& texture,
+                                         const std::string& ending) {
+  std::vector<std::uint8_t> bytes;
+  const std::string problem = loader().get().encode(texture, ending, bytes);
+  if (!problem.empty()) throw RuntimeFailure("a picture cannot be encoded: " + problem);
+  return bytes;
+}
+
 Image read_image(const fs::path& file) {
   std::error_code ec;
   if (fs::is_directory(file, ec)) throw Error(file.string() + ": cannot be read: is a folder");

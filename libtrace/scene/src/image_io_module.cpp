@@ -96,6 +96,27 @@ class OiioModule final : public ImageIoModule {
     return one_line(e.what());
   }
 
+  std::string encode(const material::Texture& texture, const std::string& ending,
+                     std::vector<std::uint8_t>& bytes) const override try {
+    auto output = OIIO::ImageOutput::create("image" + ending);
+    if (!output) return one_line(OIIO::geterror());
+    OIIO::Filesystem::IOVecOutput memory;
+    void* proxy = &memory;
+    OIIO::ImageSpec spec(texture.width, texture.height, texture.channels, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("CompressionQuality", 95);
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (!output->open("image" + ending, spec)) return one_line(output->geterror());
+    bool ok = output->write_image(OIIO::TypeDesc::UINT8, texture.pixels.data());
+    ok = output->close() && ok;
+    if (!ok) return one_line(output->geterror());
+    bytes = memory.buffer();
+    return {};
+  } catch (const std::exception& e) {
+    return one_line(e.what());
+  }
+
   std::string read(const std::string& file, Image& image) const override try {
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "material/texture.h"
 #include "scene/image.h"
@@ -18,6 +19,9 @@ class ImageIoModule {
   /// 8-bit pixels, alpha not multiplied in. `name` tells the format if the content does not.
   virtual std::string decode(const std::uint8_t* bytes, std::size_t size, const std::string& name,
                              material::Texture& texture) const = 0;
+  /// The 8-bit pixels as they are, in the format of `ending` (".png", ".jpg").
+  virtual std::string encode(const material::Texture& texture, const std::string& ending,
+                             std::vector<std::uint8_t>& bytes) const = 0;
   /// Floats; 8- and 16-bit files are decoded from sRGB.
   virtual std::string read(const std::string& file, Image& image) const = 0;
   /// Format by the ending of `file`. 8-bit formats take channels as display values in [0, 1].

@@ -1,12 +1,14 @@
-// The only code that sees VTK's readers and writers; a module of its own so that rendering a
-// picture does not load VTK.
+// This and mesh_summary.cpp alone see VTK's readers and writers; a module of its own so that
+// rendering a picture does not load VTK.
 #include "mesh_io_module.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
+#include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkPointData.h>
@@ -14,6 +16,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
@@ -21,14 +24,27 @@
 #include <algorithm>
 #include <exception>
 
+#include <Eigen/Geometry>
+
 #include "module.h"
 
 namespace atrium::scene {
 namespace {
 
+/// Do floats hold the coordinates as well as the scene's own, which are floats round its centre?
+bool floats_suffice(const PolygonMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3d& p : mesh.points) box.extend(p);
+  const double reach = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  return reach <= 2.0 * box.diagonal().norm();
+}
+
 vtkSmartPointer<vtkPoints> make_points(const PolygonMesh& mesh) {
   auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
+  if (floats_suffice(mesh))
+    points->SetDataTypeToFloat();
+  else
+    points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].data());
@@ -50,31 +66,63 @@ vtkSmartPointer<vtkCellArray> make_cells(const PolygonMesh& mesh) {
   return cells;
 }
 
-void add_arrays(const std::vector<PolygonMesh::Array>& arrays, vtkFieldData* target) {
-  for (const PolygonMesh::Array& array : arrays) {
-    vtkNew<vtkFloatArray> values;
-    values->SetName(array.name.c_str());
-    values->SetNumberOfComponents(array.components);
-    values->SetNumberOfTuples(static_cast<vtkIdType>(array.values.size()) / array.components);
-    std::copy(array.values.begin(), array.values.end(), values->GetPointer(0));
-    target->AddArray(values);
-  }
+template <class VtkArray, class Values>
+vtkSmartPointer<vtkDataArray> make_array(const std::string& name, int components,
+                                         const Values& values) {
+  auto array = vtkSmartPointer<VtkArray>::New();
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  using Value = typename VtkArray::ValueType;
+  std::transform(values.begin(), values.end(), array->GetPointer(0),
+                 [](auto v) { return static_cast<Value>(v); });
+  return array;
 }
 
-void add_field_data(const PolygonMesh& mesh, vtkFieldData* target) {
-  for (const auto& [key, value] : mesh.field_data) {
-    vtkNew<vtkStringArray> text;
-    text->SetName(key.c_str());
-    text->InsertNextValue(value);
-    target->AddArray(text);
+vtkSmartPointer<vtkDataArray> make_array(const PolygonMesh::Array& a) {
+  switch (a.type) {
+    case PolygonMesh::Type::Int32:
+      return make_array<vtkIntArray>(a.name, a.components, a.values);
+    case PolygonMesh::Type::UInt8:
+      return make_array<vtkUnsignedCharArray>(a.name, a.components, a.values);
+    case PolygonMesh::Type::Float32:
+      break;
   }
+  return make_array<vtkFloatArray>(a.name, a.components, a.values);
+}
+
+void add_strings(vtkFieldData* target, const std::string& name,
+                 const std::vector<std::string>& values) {
+  vtkNew<vtkStringArray> text;
+  text->SetName(name.c_str());
+  for (const std::string& value : values) text->InsertNextValue(value);
+  target->AddArray(text);
+}
+
+void add_units(const PolygonMesh& mesh, vtkFieldData* target) {
+  std::map<std::string, std::string> units;  // cell and point arrays share names
+  for (const auto* arrays : {&mesh.cell_arrays, &mesh.point_arrays})
+    for (const PolygonMesh::Array& a : *arrays)
+      if (!a.unit.empty()) units[a.name] = a.unit;
+  std::vector<std::string> names, values;
+  for (const auto& [name, unit] : units) {
+    names.push_back(name);
+    values.push_back(unit);
+  }
+  add_strings(target, "array_names", names);
+  add_strings(target, "array_units", values);
 }
 
 template <class Data>
 void add_all_data(const PolygonMesh& mesh, Data* data) {
-  add_arrays(mesh.cell_arrays, data->GetCellData());
-  add_arrays(mesh.point_arrays, data->GetPointData());
-  add_field_data(mesh, data->GetFieldData());
+  for (const PolygonMesh::Array& a : mesh.cell_arrays) data->GetCellData()->AddArray(make_array(a));
+  for (const PolygonMesh::Array& a : mesh.point_arrays)
+    data->GetPointData()->AddArray(make_array(a));
+  vtkFieldData* field = data->GetFieldData();
+  for (const auto& [key, values] : mesh.field_data) add_strings(field, key, values);
+  for (const PolygonMesh::FieldArray& a : mesh.field_arrays)
+    field->AddArray(make_array<vtkDoubleArray>(a.name, a.components, a.values));
+  add_units(mesh, field);
 }
 
 template <class Writer, class Data>
@@ -85,6 +133,7 @@ std::string write_with(Data* data, const std::string& file) {
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(1);  // 0.6 of the time of the default for 1 % more bytes
   if (writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError) return {};
   return vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode());
 }
@@ -111,6 +160,12 @@ class VtkModule final : public MeshIoModule {
     return write_with<vtkXMLPolyDataWriter>(poly.Get(), file);
   } catch (const std::exception& e) {
     return e.what();
+  }
+
+  std::string summarise(const std::string& file, MeshFileSummary& summary) const override try {
+    return summarise_with_vtk(file, summary);
+  } catch (const std::exception& e) {
+    return std::string("cannot be read: ") + e.what();
   }
 };
 

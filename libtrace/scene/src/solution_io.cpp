@@ -285,13 +285,13 @@ void dim(Solution& solution, const std::vector<std::pair<std::string, double>>& 
 }
 
 void check_solution(const Solution& solution, const Scene& scene, const std::string& basis,
-                    const fs::path& file) {
+                    const fs::path& file, Dimmed dimmed) {
   if (solution.scene_hash != hash_scene(scene) ||
       solution.field.triangle_facet.size() != scene.triangle_count()) {
     throw Error(file.string() + ": was solved for another scene (files or options that change it)");
   }
   for (const GroupField& g : solution.groups) {
-    if (g.factor != 1.0)
+    if (g.factor != 1.0 && dimmed == Dimmed::Refused)
       throw Error(file.string() + ": light group '" + g.name +
                   "' is dimmed, the scene's lights are not");
   }

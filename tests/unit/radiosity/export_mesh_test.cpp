@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "radiosity/export_mesh.h"
 #include "radiosity/solve.h"
 #include "unit/radiosity/sampled_wall.h"
 
@@ -250,9 +251,9 @@ TEST(ToPolygonMesh, HoldsTheDocumentedArraysInWorldCoordinates) {
   for (std::size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(b[i], 0.5f * e[i], 1e-5f * e[i]);
   for (std::size_t i = 0; i < lux.size(); ++i)
     EXPECT_NEAR(lux[i], 179.0f * e[3 * i], 1e-3f * lux[i]);
-  EXPECT_EQ(mesh.field_data.at("unit"), "W/m^2");
-  EXPECT_EQ(mesh.field_data.at("illuminance_unit"), "lx");
-  EXPECT_EQ(mesh.field_data.at("length_unit"), "m");
+  EXPECT_EQ(mesh.field_data.at("unit"), std::vector<std::string>{"W/m^2"});
+  EXPECT_EQ(mesh.field_data.at("illuminance_unit"), std::vector<std::string>{"lx"});
+  EXPECT_EQ(mesh.field_data.at("length_unit"), std::vector<std::string>{"m"});
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ PolygonMesh sample_mesh() {
   mesh.polygon_points = {0, 1, 2, 3, 1, 4, 2};
   mesh.cell_arrays = {{"irradiance", 3, {1, 2, 3, 4, 5, 6}}, {"level", 1, {0, 1}}};
   mesh.point_arrays = {{"irradiance", 1, {1, 2, 3, 4, 5}}};
-  mesh.field_data = {{"unit", "lx"}};
+  mesh.field_data = {{"unit", {"lx"}}};
   return mesh;
 }
 

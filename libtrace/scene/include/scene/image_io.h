@@ -23,6 +23,11 @@ void preload_image_io();
 [[nodiscard]] material::Texture decode_texture(const std::vector<std::uint8_t>& bytes,
                                                const std::string& name);
 
+/// A picture in memory as the bytes of a file. \param ending  ".png", or ".jpg" (without alpha).
+/// \throws RuntimeFailure  if the module is missing or cannot.
+[[nodiscard]] std::vector<std::uint8_t> encode_texture(const material::Texture& texture,
+                                                       const std::string& ending);
+
 /// Linear floats of EXR, PFM, HDR (also PNG/JPEG, decoded from sRGB).
 [[nodiscard]] Image read_image(const std::filesystem::path& file);
 

@@ -38,9 +38,10 @@ void write_solution(const Solution& solution, const std::filesystem::path& file)
 /// \throws Error  if the file is missing, no solution, of another version, truncated or damaged.
 [[nodiscard]] Solution read_solution(const std::filesystem::path& file);
 
-/// Does a solution belong to this scene and basis? One of dimmed groups does not: the scene's
-/// lights are not dimmed.  \throws Error "FILE: ..." if not.
+enum class Dimmed { Refused, Allowed };
+/// Does a solution belong to this scene and basis? One of dimmed groups only where that is allowed:
+/// the scene's lights are not dimmed.  \throws Error "FILE: ..." if not.
 void check_solution(const Solution& solution, const Scene& scene, const std::string& basis,
-                    const std::filesystem::path& file);
+                    const std::filesystem::path& file, Dimmed dimmed = Dimmed::Refused);
 
 }  // namespace atrium::scene
