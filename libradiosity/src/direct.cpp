@@ -61,7 +61,7 @@ class SideLight {
                                                  float choice, const Vec2f& u) const {
     const scene::LightSampler<N>& lights = problem_.shading.lights();
     if (!table_.knows(i)) return lights.sample(p, normal, choice, u);
-    const float by_tree = lights.has_sky() ? 0.5f : 0.2f;
+    constexpr float by_tree = 0.2f;
     const auto chance = [&](std::uint32_t number) {
       return by_tree * lights.choice_probability(p, normal, number) +
              (1.0f - by_tree) * table_.probability(i, number);
@@ -69,10 +69,6 @@ class SideLight {
     if (choice < by_tree) {
       auto s = lights.sample(p, normal, std::min(choice / by_tree, 0x1.fffffep-1f), u);
       if (!s) return s;
-      if (s->number == scene::LightSample<N>::kFarAway) {
-        s->pdf *= by_tree;
-        return s;
-      }
       const float tree = lights.choice_probability(p, normal, s->number);
       if (!(tree > 0.0f)) return std::nullopt;  // rounding
       s->pdf *= chance(s->number) / tree;

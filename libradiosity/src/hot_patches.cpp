@@ -8,7 +8,7 @@ namespace {
 /// A hemisphere ray's variance grows with area times squared radiosity. Hot is what lies far above
 /// the mean; it is worth rays of its own if it holds most of that and few sides of the area.
 constexpr double kFarAbove = 4.0;
-constexpr double kWorthwhile = 0.5;
+constexpr double kWorthwhile = 0.3;
 constexpr double kFew = 0.1;
 
 }  // namespace

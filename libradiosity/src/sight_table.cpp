@@ -12,6 +12,8 @@ namespace {
 constexpr double kUnseen = 0.01;
 /// How much of what the regions beside see counts.
 constexpr double kBeside = 0.25;
+/// A region that sees this share of all light is served better by the tree, which knows each point.
+constexpr double kMostlySeen = 0.5;
 /// Sources that hardly count are left to the tree.
 constexpr double kLeast = 1e-4;
 
@@ -54,9 +56,11 @@ SightTable::SightTable(const Regions& regions, std::size_t sides, std::size_t so
     for (const SideIndex i : regions.members(r)) region_of_[i] = static_cast<std::uint32_t>(r);
     double sum = 0.0;
     double open = 0.0;
+    double seen = 0.0;
     for (std::size_t s = 0; s < sources; ++s) {
       const Reach& own = reach[r * sources + s];
       open += own.open;
+      seen += own.seen;
       weight[s] = own.seen + kUnseen * own.open;
       for (const std::size_t beside : {r - 1, r + 1})
         if (beside < regions.size()) weight[s] += 0.5 * kBeside * reach[beside * sources + s].seen;
@@ -64,7 +68,8 @@ SightTable::SightTable(const Regions& regions, std::size_t sides, std::size_t so
     }
     open_.push_back(open);
     double until = 0.0;
-    for (std::size_t s = 0; s < sources && sum > 0.0; ++s)
+    const bool useful = seen < kMostlySeen * open && sum > 0.0;
+    for (std::size_t s = 0; s < sources && useful; ++s)
       if (weight[s] > kLeast * sum) {
         until += weight[s] / sum;
         seen_.push_back({static_cast<std::uint32_t>(s), static_cast<float>(until)});
@@ -106,6 +111,8 @@ template <int N>
 SightTable sight_of_lights(const Problem<N>& problem, const Regions& regions,
                            scene::Counters& counters) {
   const scene::LightSampler<N>& lights = problem.shading.lights();
+  // How much comes from far away the table does not know.
+  if (lights.has_sky()) return {};
   const auto reach = [&](SideIndex i, std::uint32_t light, std::uint32_t ray, scene::Counters& c) {
     scene::Sampler sampler = sampler_of(problem.options.seed, i, light, ray);
     const scene::SurfacePoint p = problem.points.sample(i / 2, sampler.next_2d());

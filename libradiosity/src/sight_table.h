@@ -68,7 +68,7 @@ class SightTable {
   std::vector<double> open_;              ///< by region
 };
 
-/// Of the lights at places, by LightSampler's numbers.
+/// Of the lights at places, by LightSampler's numbers. Empty if there is light from far away, too.
 template <int N>
 [[nodiscard]] SightTable sight_of_lights(const Problem<N>& problem, const Regions& regions,
                                          scene::Counters& counters);

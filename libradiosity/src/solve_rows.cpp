@@ -423,6 +423,8 @@ class RowSolver {
 
   /// From now on rays go where the rows and the best field so far say that light comes from.
   void guide_rays() {
+    // Rows do not say which of their entries were seen in a mirror, where another place shows them.
+    if (problem_.specular) return;
     std::vector<float> light(problem_.side_count(), 0.0f);
     for (const GroupLight<N>& g : groups_) {
       const SideValues<N> b = radiosity(g);
