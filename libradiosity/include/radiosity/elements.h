@@ -114,6 +114,12 @@ struct Refined {
 [[nodiscard]] Refined refine(const scene::Scene& scene, const Elements& elements,
                              std::span<const std::uint8_t> split);
 
+/// The elements of a field that solve() returned for this scene, or that was stored since: facets
+/// and quadtrees are the field's, their pieces are cut again. \throws std::out_of_range  if the
+/// field is of another scene.
+[[nodiscard]] Elements restore_elements(const scene::Scene& scene,
+                                        const scene::SurfaceField& field);
+
 /// A number of an element's place: (cell of level 0 in the layout) << 32 | path down the quadtree,
 /// two bits per level behind a leading one. Different for different places, and the same for an
 /// element after others were divided.
