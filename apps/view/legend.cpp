@@ -1,17 +1,17 @@
 #include "legend.h"
 
 #include <vtkDoubleArray.h>
-#include <vtkLegendBoxActor.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
-#include <vtkPlaneSource.h>
-#include <vtkPolyData.h>
-#include <vtkProperty2D.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
+#include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
+#include <algorithm>
 #include <cstdio>
+
+#include "overlay.h"
 
 namespace atrium::view {
 namespace {
@@ -39,22 +39,21 @@ std::vector<std::pair<double, std::string>> scale_marks(const Range& range,
 }
 
 Legend::Legend(vtkRenderer& renderer)
-    : bar_(vtkSmartPointer<vtkScalarBarActor>::New()),
-      classes_(vtkSmartPointer<vtkLegendBoxActor>::New()) {
-  bar_->SetBarRatio(0.28);
-  bar_->SetTitleRatio(0.3);
+    : renderer_(renderer), bar_(vtkSmartPointer<vtkScalarBarActor>::New()) {
+  bar_->SetBarRatio(0.3);
   bar_->UnconstrainedFontSizeOn();
   bar_->UseCustomLabelsOn();
   bar_->DrawNanAnnotationOff();
   bar_->SetLabelFormat(level_format());
   bar_->SetMaximumNumberOfColors(256);
-  classes_->SetBorder(0);
-  classes_->UseBackgroundOn();
-  classes_->SetBackgroundColor(0.12, 0.12, 0.12);
-  classes_->SetBackgroundOpacity(0.7);
+  bar_->SetVerticalTitleSeparation(12);
+  for (vtkTextProperty* look : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
+    look->ItalicOff();
+    look->BoldOff();
+    look->ShadowOn();
+  }
   hide();
   renderer.AddViewProp(bar_);
-  renderer.AddViewProp(classes_);
 }
 
 void Legend::show_scale(const std::string& title, vtkLookupTable* table, const Range& range,
@@ -65,6 +64,9 @@ void Legend::show_scale(const std::string& title, vtkLookupTable* table, const R
   bar_->SetLookupTable(table);
   bar_->SetCustomLabels(labels);
   bar_->SetTitle(title.c_str());
+  const int letters = letter_size(renderer_.GetSize()[1]);
+  bar_->GetTitleTextProperty()->SetFontSize(letters);
+  bar_->GetLabelTextProperty()->SetFontSize(letters);
   bar_->SetPosition(kLeft, 0.08);
   bar_->SetPosition2(0.98 - kLeft, 0.84);
   bar_->VisibilityOn();
@@ -72,27 +74,35 @@ void Legend::show_scale(const std::string& title, vtkLookupTable* table, const R
 
 void Legend::show_classes(const std::vector<Entry>& entries) {
   hide();
-  if (entries.empty()) return;
-  vtkNew<vtkPlaneSource> square;
-  square->Update();
-  classes_->SetNumberOfEntries(static_cast<int>(entries.size()));
+  const int height = renderer_.GetSize()[1];
+  const int letters = std::max(8, letter_size(height) - 2);
+  const double row = 1.5 * letters / std::max(1, height);
   for (std::size_t i = 0; i < entries.size(); ++i) {
+    const double y = 0.96 - row * static_cast<double>(i + 1);
     const auto& [text, c] = entries[i];
-    const double rgb[3] = {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0};
-    classes_->SetEntry(static_cast<int>(i), square->GetOutput(), text.c_str(),
-                       const_cast<double*>(rgb));
+    for (const bool swatch : {true, false}) {
+      auto actor = vtkSmartPointer<vtkTextActor>::New();
+      actor->SetInput(swatch ? "    " : text.c_str());
+      actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+      actor->GetPositionCoordinate()->SetValue(swatch ? 0.76 : 0.80, y);
+      vtkTextProperty* look = actor->GetTextProperty();
+      look->SetFontSize(letters);
+      look->SetColor(1.0, 1.0, 1.0);
+      if (swatch)
+        look->SetBackgroundColor(c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
+      else
+        look->SetBackgroundColor(0.12, 0.12, 0.12);
+      look->SetBackgroundOpacity(swatch ? 1.0 : 0.6);
+      renderer_.AddViewProp(actor);
+      classes_.push_back(std::move(actor));
+    }
   }
-  const double height = std::min(0.84, 0.05 * static_cast<double>(entries.size()));
-  classes_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  classes_->GetPositionCoordinate()->SetValue(0.72, 0.92 - height);
-  classes_->GetPosition2Coordinate()->SetCoordinateSystemToNormalizedViewport();
-  classes_->GetPosition2Coordinate()->SetValue(0.27, height);
-  classes_->VisibilityOn();
 }
 
 void Legend::hide() {
   bar_->VisibilityOff();
-  classes_->VisibilityOff();
+  for (const auto& actor : classes_) renderer_.RemoveViewProp(actor);
+  classes_.clear();
 }
 
 }  // namespace atrium::view

@@ -8,9 +8,9 @@
 
 #include "colours.h"
 
-class vtkLegendBoxActor;
 class vtkRenderer;
 class vtkScalarBarActor;
+class vtkTextActor;
 
 namespace atrium::view {
 
@@ -30,8 +30,9 @@ class Legend {
   void hide();
 
  private:
+  vtkRenderer& renderer_;
   vtkSmartPointer<vtkScalarBarActor> bar_;
-  vtkSmartPointer<vtkLegendBoxActor> classes_;
+  std::vector<vtkSmartPointer<vtkTextActor>> classes_;
 };
 
 /// Values and texts that a scale is marked with.

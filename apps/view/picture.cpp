@@ -56,7 +56,10 @@ struct Picture::Impl {
         surface(r),
         edges(r, {20, 20, 20}, 1.0),
         outline(r, {255, 60, 220}, 2.5),
-        contours(r),
+        contours(r,
+                 [this](const Vec3d& origin, const Vec3d& direction) {
+                   return get_picker().pick(origin, direction, state->clips, state->cull);
+                 }),
         legend(r) {}
 
   vtkRenderer& renderer;
@@ -69,12 +72,16 @@ struct Picture::Impl {
   std::vector<Field> fields;
   std::optional<PictureState> state;  ///< shown now; absent: everything is to be made again
   bool geometry_changed = true;
+  std::vector<Selection> built_hidden;
+  bool built_no_ceilings = false;
   std::vector<std::uint8_t> shown;  ///< by polygon
   Triangles triangles;
   mutable std::unique_ptr<Picker> picker;
   std::array<std::optional<Values>, 2> values;  ///< by side, as coloured
   vtkSmartPointer<vtkLookupTable> table;
   Range range;
+  double size = 1.0;                           ///< of the mesh [m]
+  std::optional<std::vector<SeenPlace>> seen;  ///< by the camera when last asked
   std::optional<double> automatic_ev;
   std::vector<double> levels;
 
@@ -88,7 +95,13 @@ struct Picture::Impl {
     triangles = triangulate(*mesh, shown);
     surface.set_geometry(*mesh, triangles);
     picker.reset();
+    seen.reset();
     geometry_changed = false;
+    built_hidden = next.hidden;
+    built_no_ceilings = next.no_ceilings;
+    Eigen::AlignedBox3d box;
+    for (const Vec3d& p : mesh->polygons.points) box.extend(p);
+    size = box.diagonal().norm();
   }
   void hide(const std::vector<std::uint8_t>& polygons) {
     for (std::size_t k = 0; k < shown.size(); ++k) shown[k] = polygons[k] != 0 ? 0 : shown[k];
@@ -99,6 +112,13 @@ struct Picture::Impl {
     return *picker;
   }
 
+  const std::vector<SeenPlace>& get_seen() {
+    if (!seen)
+      seen = seen_places(get_picker(), *renderer.GetActiveCamera(), renderer.GetTiledAspectRatio(),
+                         *state);
+    return *seen;
+  }
+
   /// Everything that depends on field and values.
   void update_values() {
     for (const Side side : {Side::Front, Side::Back})
@@ -106,13 +126,18 @@ struct Picture::Impl {
           has(side) ? std::optional(values_of(*mesh, field(), side, !state->flat)) : std::nullopt;
   }
 
+  /// Suits what the camera saw when it was last asked for; everything if it saw nothing.
+  [[nodiscard]] Range suitable_range(const Field& f) {
+    const std::vector<Weighted> of_view = seen_values(*mesh, f, get_seen(), state->side);
+    return automatic_range(
+        of_view.empty() ? weighted_values(*mesh, f, state->side, true, shown) : of_view,
+        state->logarithmic);
+  }
+
   void update_range() {
     const bool scale = field().look == Look::Scale || field().look == Look::Error;
     if (!scale) return;
-    range = state->range
-                ? *state->range
-                : automatic_range(weighted_values(*mesh, field(), state->side, true, shown),
-                                  state->logarithmic);
+    range = state->range ? *state->range : suitable_range(field());
     table = make_table(field().look, range);
   }
 
@@ -142,8 +167,7 @@ struct Picture::Impl {
     if (state->ev) return *state->ev;
     if (!automatic_ev)
       automatic_ev =
-          exposure_of_view(*mesh, fields[find_field(fields, "radiosity")], get_picker(),
-                           *renderer.GetActiveCamera(), renderer.GetTiledAspectRatio(), *state);
+          exposure_of(*mesh, fields[find_field(fields, "radiosity")], get_seen(), state->side);
     return *automatic_ev;
   }
 
@@ -153,17 +177,14 @@ struct Picture::Impl {
     if (!state->contours.any() || field().look == Look::Classes) return;
     Field numbers = field();
     if (numbers.look == Look::TrueColour) numbers = fields[find_field(fields, "illuminance")];
-    const Range span =
-        numbers.name == field().name
-            ? range
-            : automatic_range(weighted_values(*mesh, numbers, state->side, true, shown),
-                              state->logarithmic);
+    const Range span = numbers.name == field().name ? range : suitable_range(numbers);
     levels = state->contours.levels.empty() ? round_levels(span, state->contours.count)
                                             : state->contours.levels;
     for (const Side side : {Side::Front, Side::Back})
       if (has(side) && (side == Side::Front || numbers.sided))
         contours.add(find_contours(*mesh, triangles, side, numbers_of(*mesh, numbers, side, true),
-                                   levels, state->clips));
+                                   levels, state->clips),
+                     size);
   }
 
   void update_legend() {
@@ -201,17 +222,16 @@ void Picture::set_mesh(const Mesh& mesh, bool same_geometry) {
 void Picture::show(const PictureState& next) {
   Impl& p = *impl_;
   const PictureState* old = p.state ? &*p.state : nullptr;
-  const bool geometry = p.geometry_changed || old == nullptr || old->hidden != next.hidden ||
-                        old->no_ceilings != next.no_ceilings;
-  const bool only_values = old == nullptr && !p.geometry_changed;
-  const bool values =
-      geometry || old->field != next.field || old->side != next.side || old->flat != next.flat;
+  const bool geometry = p.geometry_changed || p.built_hidden != next.hidden ||
+                        p.built_no_ceilings != next.no_ceilings;
+  const bool values = geometry || old == nullptr || old->field != next.field ||
+                      old->side != next.side || old->flat != next.flat;
   const bool range = values || old->range != next.range || old->logarithmic != next.logarithmic;
-  const bool colours = range || old->ev != next.ev || !p.automatic_ev;
+  const bool colours = range || old->ev != next.ev;
   const bool contours = range || old->contours != next.contours || old->clips != next.clips;
-  const bool lines = geometry || old->edges != next.edges;
-  const bool outline = geometry || old->selection != next.selection;
-  if (geometry && !only_values) p.update_geometry(next);
+  const bool lines = geometry || old == nullptr || old->edges != next.edges;
+  const bool outline = geometry || old == nullptr || old->selection != next.selection;
+  if (geometry) p.update_geometry(next);
   p.state = next;
   if (p.fields.empty()) return p.surface.show({true, true, false, true}, next.clips);
   if (values) p.update_values();
@@ -239,8 +259,13 @@ std::string Picture::title() const {
 std::size_t Picture::triangle_count() const { return impl_->triangles.size(); }
 const Range& Picture::range() const { return impl_->range; }
 const std::vector<double>& Picture::contour_levels() const { return impl_->levels; }
+std::size_t Picture::label_count() const { return impl_->contours.label_count(); }
 double Picture::ev() const { return impl_->state->ev.value_or(impl_->automatic_ev.value_or(0.0)); }
-void Picture::forget_exposure() { impl_->automatic_ev.reset(); }
+void Picture::look_again() {
+  impl_->seen.reset();
+  impl_->automatic_ev.reset();
+  impl_->state.reset();
+}
 
 double Picture::value_at(const Picker::Hit& hit) const {
   const Impl& p = *impl_;

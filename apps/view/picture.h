@@ -27,7 +27,6 @@ class Picture {
   /// The renderer draws with the next show(). \param mesh  lives longer than this, or until the
   /// next call. \param same_geometry  only arrays have changed.
   void set_mesh(const Mesh& mesh, bool same_geometry);
-  /// \param view  decides automatic exposure where none was known.
   void show(const PictureState& state);
 
   [[nodiscard]] const Field& field() const;
@@ -38,9 +37,11 @@ class Picture {
   /// Of the colours, as shown.
   [[nodiscard]] const Range& range() const;
   [[nodiscard]] const std::vector<double>& contour_levels() const;
+  /// Labels of contours that are seen.
+  [[nodiscard]] std::size_t label_count() const;
   [[nodiscard]] double ev() const;
-  /// Forgets exposure: the next show() looks at what the camera sees.
-  void forget_exposure();
+  /// The next show() chooses automatic exposure and range for what the camera sees then.
+  void look_again();
 
   /// What is shown of a polygon's side and at a place of it; NaN: unknown.
   [[nodiscard]] double value_at(const Picker::Hit& hit) const;

@@ -105,6 +105,6 @@ std::vector<double> round_levels(const Range& range, int count) {
   return levels;
 }
 
-const char* level_format() { return "%.4g"; }
+const char* level_format() { return "%.6g"; }
 
 }  // namespace atrium::view

@@ -34,6 +34,10 @@ Light by_area(const Mesh& mesh, const Values& values) {
   return light;
 }
 
+bool shows_front(const SeenPlace& place, ShownSide side) {
+  return side == ShownSide::Seen ? place.front : side == ShownSide::Front;
+}
+
 }  // namespace
 
 ViewRay view_ray(vtkCamera& camera, double aspect, double x, double y) {
@@ -49,25 +53,41 @@ ViewRay view_ray(vtkCamera& camera, double aspect, double x, double y) {
   return {eye, (ahead + x * h * aspect * right + y * h * up).normalized()};
 }
 
-double exposure_of_view(const Mesh& mesh, const Field& radiosity, const Picker& picker,
-                        vtkCamera& camera, double aspect, const PictureState& state) {
-  constexpr int kColumns = 48, kRows = 36;
-  const Values front = values_of(mesh, radiosity, Side::Front, false);
-  const Values back = values_of(mesh, radiosity, Side::Back, false);
-  Light light;
+std::vector<SeenPlace> seen_places(const Picker& picker, vtkCamera& camera, double aspect,
+                                   const PictureState& state) {
+  constexpr int kColumns = 64, kRows = 48;
+  std::vector<SeenPlace> seen;
   for (int i = 0; i < kColumns * kRows; ++i) {
     const double x = 2.0 * (i % kColumns + 0.5) / kColumns - 1.0;
     const double y = 2.0 * (i / kColumns + 0.5) / kRows - 1.0;
     const ViewRay ray = view_ray(camera, aspect, x, y);
-    const auto hit = picker.pick(ray.origin, ray.direction, state.clips, state.cull);
-    if (!hit) continue;
-    const bool is_front =
-        state.side == ShownSide::Seen ? hit->front : state.side == ShownSide::Front;
-    add_known(is_front ? front : back, hit->polygon, light);
+    if (const auto hit = picker.pick(ray.origin, ray.direction, state.clips, state.cull))
+      seen.push_back({hit->polygon, hit->front});
   }
+  return seen;
+}
+
+double exposure_of(const Mesh& mesh, const Field& radiosity, const std::vector<SeenPlace>& seen,
+                   ShownSide side) {
+  const Values front = values_of(mesh, radiosity, Side::Front, false);
+  const Values back = values_of(mesh, radiosity, Side::Back, false);
+  Light light;
+  for (const SeenPlace& p : seen) add_known(shows_front(p, side) ? front : back, p.polygon, light);
   const bool lit = std::any_of(light.begin(), light.end(),
                                [](const auto& b) { return b[0] + b[1] + b[2] > 0.0f; });
-  return automatic_ev(lit ? light : by_area(mesh, state.side == ShownSide::Back ? back : front));
+  return automatic_ev(lit ? light : by_area(mesh, side == ShownSide::Back ? back : front));
+}
+
+std::vector<Weighted> seen_values(const Mesh& mesh, const Field& field,
+                                  const std::vector<SeenPlace>& seen, ShownSide side) {
+  const Values front = numbers_of(mesh, field, Side::Front, false);
+  const Values back = numbers_of(mesh, field, Side::Back, false);
+  std::vector<Weighted> values;
+  for (const SeenPlace& p : seen) {
+    const float v = (shows_front(p, side) ? front : back).numbers[p.polygon];
+    if (std::isfinite(v)) values.push_back({static_cast<double>(v), 1.0});
+  }
+  return values;
 }
 
 }  // namespace atrium::view

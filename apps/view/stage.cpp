@@ -68,7 +68,6 @@ Stage::Stage(Document document, const ViewCommand& command, bool off_screen)
   window_->SetWindowName(("atrium-view " + document_.title).c_str());
   window_->SetSize(command.size[0], command.size[1]);
   window_->SetOffScreenRendering(off_screen ? 1 : 0);
-  window_->SetStencilCapable(1);
   window_->SetMultiSamples(off_screen ? 4 : 0);
   window_->AddRenderer(renderer_);
   overlay_.fit(command.size[1]);

@@ -1,6 +1,7 @@
 #include "view_point.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -12,10 +13,30 @@
 namespace atrium::view {
 namespace {
 
+/// What most polygons are in: a ground plane of a kilometre or a far sky does not make a building a
+/// dot.
 Eigen::AlignedBox3d box_of(const Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const std::uint32_t p : mesh.polygons.polygon_points) box.extend(mesh.polygons.points[p]);
-  return box;
+  constexpr double kOutside = 0.02;  // share of the polygons, at either end
+  constexpr double kMuch = 3.0;      // only if that makes the box so much smaller
+  std::array<std::vector<double>, 3> places;
+  Eigen::AlignedBox3d all;
+  for (std::size_t k = 0; k < mesh.polygon_count(); ++k) {
+    const Vec3d centre = mesh.centre(k);
+    for (int axis = 0; axis < 3; ++axis)
+      places[static_cast<std::size_t>(axis)].push_back(centre[axis]);
+    for (const std::uint32_t p : mesh.corners(k)) all.extend(mesh.polygons.points[p]);
+  }
+  Vec3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double>& v = places[static_cast<std::size_t>(axis)];
+    std::sort(v.begin(), v.end());
+    const auto outside = static_cast<std::size_t>(kOutside * static_cast<double>(v.size()));
+    low[axis] = v[outside];
+    high[axis] = v[v.size() - 1 - outside];
+  }
+  const Vec3d margin = Vec3d::Constant(0.03 * (high - low).norm());
+  const Eigen::AlignedBox3d most(low - margin, high + margin);
+  return most.diagonal().norm() * kMuch < all.diagonal().norm() ? most : all;
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

@@ -161,7 +161,7 @@ void Window::act(Action action) {
     case Action::AutomaticRange:
       s.range.reset();
       s.ev.reset();
-      stage_.picture().forget_exposure();
+      stage_.picture().look_again();
       break;
     case Action::RangeUp:
       change_range(1.25);
