@@ -3,6 +3,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
 #include <vtkTextActor.h>
@@ -39,19 +40,30 @@ std::vector<std::pair<double, std::string>> scale_marks(const Range& range,
 }
 
 Legend::Legend(vtkRenderer& renderer)
-    : renderer_(renderer), bar_(vtkSmartPointer<vtkScalarBarActor>::New()) {
+    : renderer_(renderer),
+      bar_(vtkSmartPointer<vtkScalarBarActor>::New()),
+      title_(vtkSmartPointer<vtkTextActor>::New()) {
   bar_->SetBarRatio(0.3);
   bar_->UnconstrainedFontSizeOn();
   bar_->UseCustomLabelsOn();
   bar_->DrawNanAnnotationOff();
   bar_->SetLabelFormat(level_format());
   bar_->SetMaximumNumberOfColors(256);
-  bar_->SetVerticalTitleSeparation(12);
-  for (vtkTextProperty* look : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
-    look->ItalicOff();
-    look->BoldOff();
-    look->ShadowOn();
-  }
+  bar_->DrawBackgroundOn();
+  bar_->GetBackgroundProperty()->SetColor(0.1, 0.1, 0.1);
+  bar_->GetBackgroundProperty()->SetOpacity(0.6);
+  vtkTextProperty* labels = bar_->GetLabelTextProperty();
+  labels->ItalicOff();
+  labels->BoldOff();
+  labels->ShadowOff();
+  title_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  title_->GetPositionCoordinate()->SetValue(0.985, 0.985);
+  vtkTextProperty* look = title_->GetTextProperty();
+  look->SetJustificationToRight();
+  look->SetVerticalJustificationToTop();
+  look->SetBackgroundColor(0.1, 0.1, 0.1);
+  look->SetBackgroundOpacity(0.6);
+  renderer.AddViewProp(title_);
   hide();
   renderer.AddViewProp(bar_);
 }
@@ -63,12 +75,13 @@ void Legend::show_scale(const std::string& title, vtkLookupTable* table, const R
   for (const auto& [value, text] : scale_marks(range, contours)) labels->InsertNextValue(value);
   bar_->SetLookupTable(table);
   bar_->SetCustomLabels(labels);
-  bar_->SetTitle(title.c_str());
   const int letters = letter_size(renderer_.GetSize()[1]);
-  bar_->GetTitleTextProperty()->SetFontSize(letters);
+  title_->GetTextProperty()->SetFontSize(letters);
+  title_->SetInput(title.c_str());
+  title_->VisibilityOn();
   bar_->GetLabelTextProperty()->SetFontSize(letters);
   bar_->SetPosition(kLeft, 0.08);
-  bar_->SetPosition2(0.98 - kLeft, 0.84);
+  bar_->SetPosition2(0.985 - kLeft, 0.82);
   bar_->VisibilityOn();
 }
 
@@ -101,6 +114,7 @@ void Legend::show_classes(const std::vector<Entry>& entries) {
 
 void Legend::hide() {
   bar_->VisibilityOff();
+  title_->VisibilityOff();
   for (const auto& actor : classes_) renderer_.RemoveViewProp(actor);
   classes_.clear();
 }

@@ -32,6 +32,7 @@ class Legend {
  private:
   vtkRenderer& renderer_;
   vtkSmartPointer<vtkScalarBarActor> bar_;
+  vtkSmartPointer<vtkTextActor> title_;
   std::vector<vtkSmartPointer<vtkTextActor>> classes_;
 };
 

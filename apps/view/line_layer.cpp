@@ -28,7 +28,6 @@ vtkSmartPointer<vtkPoints> points_of(const Mesh& mesh) {
 
 LineLayer::LineLayer(vtkRenderer& renderer, Colour colour, double width)
     : mapper_(vtkSmartPointer<vtkPolyDataMapper>::New()), actor_(vtkSmartPointer<vtkActor>::New()) {
-  mapper_->SetResolveCoincidentTopologyToPolygonOffset();
   mapper_->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -2.0);
   mapper_->ScalarVisibilityOff();
   actor_->SetMapper(mapper_);

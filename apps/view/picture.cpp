@@ -205,6 +205,7 @@ struct Picture::Impl {
     s.back = has(Side::Back) && !(state->cull && state->side == ShownSide::Seen);
     s.only_facing = state->side == ShownSide::Seen || state->cull;
     s.lit = field().look == Look::Classes || field().look == Look::Surface;
+    s.behind_lines = state->edges || !levels.empty() || state->selection != Selection{};
     surface.show(s, state->clips);
   }
 };
@@ -233,7 +234,7 @@ void Picture::show(const PictureState& next) {
   const bool outline = geometry || old == nullptr || old->selection != next.selection;
   if (geometry) p.update_geometry(next);
   p.state = next;
-  if (p.fields.empty()) return p.surface.show({true, true, false, true}, next.clips);
+  if (p.fields.empty()) return p.surface.show({true, true, false, true, next.edges}, next.clips);
   if (values) p.update_values();
   if (range) p.update_range();
   if (colours) p.update_colours();

@@ -2,6 +2,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellArrayIterator.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
@@ -48,11 +49,23 @@ vtkSmartPointer<vtkPolyData> polygons_only(vtkPolyData* data) {
   return filter->GetOutput();
 }
 
+/// Flat cells are polygons as they are; of volumes the surface is.
 vtkSmartPointer<vtkPolyData> surface_of(vtkUnstructuredGrid* grid) {
-  vtkNew<vtkDataSetSurfaceFilter> filter;
-  filter->SetInputData(grid);
-  filter->Update();
-  return polygons_only(filter->GetOutput());
+  const vtkIdType cells = grid->GetNumberOfCells();
+  for (vtkIdType c = 0; c < cells; ++c) {
+    const int type = grid->GetCellType(c);
+    if (type == VTK_POLYGON || type == VTK_TRIANGLE || type == VTK_QUAD) continue;
+    vtkNew<vtkDataSetSurfaceFilter> filter;
+    filter->SetInputData(grid);
+    filter->Update();
+    return polygons_only(filter->GetOutput());
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(grid->GetPoints());
+  data->SetPolys(grid->GetCells());
+  data->GetPointData()->ShallowCopy(grid->GetPointData());
+  data->GetCellData()->ShallowCopy(grid->GetCellData());
+  return data;
 }
 
 void add_geometry(vtkPolyData& data, const std::string& file, scene::PolygonMesh& mesh) {

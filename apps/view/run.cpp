@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include <vtkObject.h>
+
 #include <cstdio>
 
 #include "common/progress.h"
@@ -24,7 +26,8 @@ constexpr int kInterrupted = 130;
 
 void print_statistics(const ViewCommand& c, Mesh& mesh) {
   const PictureState state = initial_state(c.look, mesh);
-  initial_weights(c.look, mesh).apply(mesh);
+  const Weights weights = initial_weights(c.look, mesh);
+  if (!weights.as_solved()) weights.apply(mesh);
   const std::vector<Field> fields = fields_of(mesh);
   if (fields.empty()) throw Error("--statistics: the mesh has no arrays");
   const Selection which = parse_selection("--statistics", c.statistics, mesh);
@@ -60,6 +63,7 @@ void watch_solve(const ViewCommand&, std::stop_token,
 }  // namespace
 
 int run_view(const ViewCommand& c, std::stop_token stop) {
+  vtkObject::GlobalWarningDisplayOff();  // errors come back as our own
   app::Progress progress(c.quiet);
   const scene::ThreadLimit threads(c.threads);
   const bool window_needed = c.statistics.empty() || !c.screenshot.empty();

@@ -132,6 +132,12 @@ void Surface::show(const Shown& shown, const std::vector<Clip>& clips) {
     look->SetAmbient(shown.lit ? 0.55 : 0.0);
     look->SetDiffuse(shown.lit ? 0.45 : 1.0);
     look->SetInterpolationToFlat();
+    // Costs time at every pixel: not without need.
+    if (shown.behind_lines)
+      l.mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    else
+      l.mapper->SetResolveCoincidentTopologyToOff();
+    l.mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(3.0, 3.0);
     l.mapper->SetClippingPlanes(planes);
   }
 }

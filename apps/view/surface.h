@@ -37,6 +37,7 @@ class Surface {
     bool front = true, back = true;  ///< which of the two is there
     bool only_facing = true;         ///< each is seen from its own side only
     bool lit = false;                ///< shaded, so that shapes are seen
+    bool behind_lines = false;       ///< a little farther away, so that lines on it are seen
   };
   void show(const Shown& shown, const std::vector<Clip>& clips);
 

@@ -93,7 +93,9 @@ Values collect(const Mesh& mesh, const Field& field, Side side, bool smooth, boo
   else if (points != nullptr)
     v = at_polygons(mesh, take(*points, Place::Points));
   else
-    v = {Place::Polygons, 1, std::vector<float>(mesh.polygon_count(), kUnknown)};
+    v = {at_corners ? Place::Points : Place::Polygons, 1,
+         std::vector<float>(at_corners ? mesh.polygons.points.size() : mesh.polygon_count(),
+                            kUnknown)};
   if (field.sided) forget_invalid(mesh, side, v);
   return v;
 }

@@ -1,5 +1,7 @@
 #include "vtk_errors.h"
 
+#include <vtkLogger.h>
+#include <vtkObject.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 
@@ -29,10 +31,17 @@ std::string reason(const std::string& text) {
 }  // namespace
 
 VtkErrors::VtkErrors()
-    : before_(vtkOutputWindow::GetInstance()), window_(vtkSmartPointer<Collector>::New()) {
+    : before_(vtkOutputWindow::GetInstance()),
+      window_(vtkSmartPointer<Collector>::New()),
+      displayed_(vtkObject::GetGlobalWarningDisplay()) {
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   vtkOutputWindow::SetInstance(window_);
+  vtkObject::GlobalWarningDisplayOn();
 }
-VtkErrors::~VtkErrors() { vtkOutputWindow::SetInstance(before_); }
+VtkErrors::~VtkErrors() {
+  vtkObject::SetGlobalWarningDisplay(displayed_);
+  vtkOutputWindow::SetInstance(before_);
+}
 
 std::string VtkErrors::text() const {
   return reason(static_cast<const Collector*>(window_.Get())->first);

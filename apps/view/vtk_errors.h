@@ -21,6 +21,7 @@ class VtkErrors {
 
  private:
   vtkSmartPointer<vtkOutputWindow> before_, window_;
+  int displayed_;
 };
 
 }  // namespace atrium::view

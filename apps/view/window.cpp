@@ -69,7 +69,13 @@ Window::Window(Document document, const ViewCommand& command, std::unique_ptr<Me
   sliders_->set_groups(stage_.weights().groups(), stage_.weights().factors());
 }
 
-Window::~Window() = default;
+/// Window and interactor hold each other; later event loops would ask for this one's events.
+Window::~Window() {
+  sliders_.reset();
+  interactor_->SetInteractorStyle(nullptr);
+  stage_.window().SetInteractor(nullptr);
+  interactor_->SetRenderWindow(nullptr);
+}
 
 void Window::connect() {
   // VTK would take the program down by itself on 'q' and 'e'.
@@ -179,10 +185,10 @@ void Window::act(Action action) {
       toggle_contours();
       break;
     case Action::MoreContours:
-      change_contours(2);
+      change_contours(1);
       break;
     case Action::FewerContours:
-      change_contours(-2);
+      change_contours(-1);
       break;
     case Action::Flat:
       s.flat = !s.flat;
@@ -266,9 +272,15 @@ void Window::toggle_contours() {
   c = c.any() ? ContourChoice{} : last_contours_;
 }
 
+/// Until their number changes: values stay round.
 void Window::change_contours(int more) {
+  constexpr int kMost = 60;
   const std::size_t now = stage_.picture().contour_levels().size();
-  stage_.state.contours = {std::clamp(static_cast<int>(now) + more, 1, 40), {}};
+  for (int n = static_cast<int>(now) + more; n >= 1 && n <= kMost; n += more) {
+    if (round_levels(stage_.picture().range(), n).size() == now) continue;
+    stage_.state.contours = {n, {}};
+    return;
+  }
 }
 
 double Window::size() const {
