@@ -81,7 +81,7 @@ void Legend::show_scale(const std::string& title, vtkLookupTable* table, const R
   title_->VisibilityOn();
   bar_->GetLabelTextProperty()->SetFontSize(letters);
   bar_->SetPosition(kLeft, 0.08);
-  bar_->SetPosition2(0.985 - kLeft, 0.82);
+  bar_->SetPosition2(0.985 - kLeft, 0.78);
   bar_->VisibilityOn();
 }
 

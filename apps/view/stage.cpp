@@ -68,7 +68,9 @@ Stage::Stage(Document document, const ViewCommand& command, bool off_screen)
   window_->SetWindowName(("atrium-view " + document_.title).c_str());
   window_->SetSize(command.size[0], command.size[1]);
   window_->SetOffScreenRendering(off_screen ? 1 : 0);
-  window_->SetMultiSamples(off_screen ? 4 : 0);
+  // Software draws thin lines with gaps if a pixel has several samples.
+  window_->SetMultiSamples(0);
+  renderer_->SetUseFXAA(off_screen);
   window_->AddRenderer(renderer_);
   overlay_.fit(command.size[1]);
   picture_->set_mesh(document_.mesh, false);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -41,6 +42,7 @@ class VirtualDisplay : public ::testing::Environment {
 
  private:
   [[noreturn]] static void start(int number_to) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // also of a test that crashes
     const int null = open("/dev/null", O_RDWR);
     dup2(null, STDOUT_FILENO);
     dup2(null, STDERR_FILENO);

@@ -5,6 +5,8 @@
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
 
+#include <unistd.h>
+
 #include <chrono>
 #include <thread>
 
@@ -336,12 +338,32 @@ TEST(ViewWindow, NewerStatesAreShownAsTheyCome) {
   window.poll();
 }
 
-TEST(ViewWindow, WhatAnOptionNamesMustBeInTheFirstState) {
-  ATRIUM_NEEDS_DISPLAY();
+/// Leaves with 7 for an error, 0 if the window was closed.
+[[noreturn]] void run_until_closed(const std::string& field, std::stop_token stop) {
   auto script = std::make_unique<Script>();
   script->states = {document().mesh};
-  Window window(bare_document(), command("nonsense"), std::move(script));
-  EXPECT_THROW(window.run({}), Error);
+  Window window(bare_document(), command(field), std::move(script));
+  try {
+    window.run(std::move(stop));
+  } catch (const Error&) {
+    _exit(7);
+  }
+  _exit(0);
+}
+
+// In processes of their own: VTK's event loop asks for events of all windows that there ever were.
+TEST(ViewLoop, WhatAnOptionNamesMustBeInTheFirstState) {
+  ATRIUM_NEEDS_DISPLAY();
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(run_until_closed("nonsense", {}), testing::ExitedWithCode(7), "");
+}
+
+TEST(ViewLoop, AnInterruptClosesTheWindow) {
+  ATRIUM_NEEDS_DISPLAY();
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EXIT(run_until_closed("illuminance", stop.get_token()), testing::ExitedWithCode(0), "");
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY
@@ -379,7 +401,7 @@ TEST(ViewLive, DestructionStopsTheSolve) {
   const test::TempFolder folder;
   SolveChoice choice;
   choice.error = 1e-6;
-  choice.quality = app::Quality::High;
+  choice.quality = app::Quality::Normal;
   auto solve = std::make_unique<LiveSolve>(lit_floor(folder), choice);
   while (!solve->take()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_FALSE(solve->status().finished);
