@@ -45,7 +45,8 @@ void LineLayer::show_edges(const Mesh& mesh, const std::vector<std::uint8_t>& sh
   data->SetPoints(points_of(mesh));
   data->SetLines(lines);
   mapper_->SetInputData(data);
-  actor_->VisibilityOn();
+  has_lines_ = true;
+  hide(false);
 }
 
 void LineLayer::show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& selected) {
@@ -64,7 +65,8 @@ void LineLayer::show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& 
   edges->ColoringOff();
   edges->Update();
   mapper_->SetInputData(edges->GetOutput());
-  actor_->VisibilityOn();
+  has_lines_ = true;
+  hide(false);
 }
 
 void LineLayer::clip(const std::vector<Clip>& clips) {
@@ -73,7 +75,10 @@ void LineLayer::clip(const std::vector<Clip>& clips) {
 
 void LineLayer::clear() {
   mapper_->SetInputData(vtkSmartPointer<vtkPolyData>::New());
-  actor_->VisibilityOff();
+  has_lines_ = false;
+  hide(false);
 }
+
+void LineLayer::hide(bool hidden) { actor_->SetVisibility(has_lines_ && !hidden); }
 
 }  // namespace atrium::view

@@ -25,10 +25,13 @@ class LineLayer {
   void show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& selected);
   void clip(const std::vector<Clip>& clips);
   void clear();
+  /// For a while.
+  void hide(bool hidden);
 
  private:
   vtkSmartPointer<vtkPolyDataMapper> mapper_;
   vtkSmartPointer<vtkActor> actor_;
+  bool has_lines_ = false;
 };
 
 }  // namespace atrium::view

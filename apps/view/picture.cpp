@@ -9,6 +9,7 @@
 #include <map>
 
 #include "ceilings.h"
+#include "coarse.h"
 #include "colours.h"
 #include "contour_layer.h"
 #include "contour_lines.h"
@@ -22,6 +23,7 @@ namespace atrium::view {
 namespace {
 
 constexpr std::size_t kClassesListed = 14;
+constexpr std::size_t kWhileMoving = 100000;  // triangles
 
 bool shows(ShownSide shown, Side side) {
   return shown == ShownSide::Seen || (shown == ShownSide::Front) == (side == Side::Front);
@@ -93,7 +95,7 @@ struct Picture::Impl {
     for (const Selection& s : next.hidden) hide(selected(*mesh, s));
     if (next.no_ceilings) hide(find_ceilings(*mesh));
     triangles = triangulate(*mesh, shown);
-    surface.set_geometry(*mesh, triangles);
+    surface.set_geometry(*mesh, triangles, coarsen(*mesh, triangles, kWhileMoving));
     picker.reset();
     seen.reset();
     geometry_changed = false;
@@ -206,7 +208,7 @@ struct Picture::Impl {
     s.only_facing = state->side == ShownSide::Seen || state->cull;
     s.lit = field().look == Look::Classes || field().look == Look::Surface;
     s.behind_lines = state->edges || !levels.empty() || state->selection != Selection{};
-    surface.show(s, state->clips);
+    surface.show(s);
   }
 };
 
@@ -231,15 +233,22 @@ void Picture::show(const PictureState& next) {
   const bool colours = range || old->ev != next.ev;
   const bool contours = range || old->contours != next.contours || old->clips != next.clips;
   const bool lines = geometry || old == nullptr || old->edges != next.edges;
+  const bool clips = old == nullptr || old->clips != next.clips;
+  const bool legend = old == nullptr || old->legend != next.legend;
   const bool outline = geometry || old == nullptr || old->selection != next.selection;
   if (geometry) p.update_geometry(next);
   p.state = next;
-  if (p.fields.empty()) return p.surface.show({true, true, false, true, next.edges}, next.clips);
+  if (clips) {
+    p.surface.clip(next.clips);
+    p.edges.clip(next.clips);
+    p.outline.clip(next.clips);
+  }
+  if (p.fields.empty()) return p.surface.show({true, true, false, true, next.edges});
   if (values) p.update_values();
   if (range) p.update_range();
   if (colours) p.update_colours();
   if (contours) p.update_contours();
-  p.update_legend();
+  if (contours || legend) p.update_legend();
   p.update_surface();
   if (lines) next.edges ? p.edges.show_edges(*p.mesh, p.shown) : p.edges.clear();
   if (outline) {
@@ -248,8 +257,11 @@ void Picture::show(const PictureState& next) {
     else
       p.outline.show_outline(*p.mesh, selected(*p.mesh, next.selection));
   }
-  p.edges.clip(next.clips);
-  p.outline.clip(next.clips);
+}
+
+void Picture::moving(bool coarse) {
+  impl_->surface.moving(coarse);
+  impl_->edges.hide(coarse && impl_->triangles.size() > kWhileMoving);
 }
 
 const Field& Picture::field() const { return impl_->field(); }

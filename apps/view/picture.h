@@ -29,6 +29,9 @@ class Picture {
   void set_mesh(const Mesh& mesh, bool same_geometry);
   void show(const PictureState& state);
 
+  /// Large meshes are drawn with fewer triangles while it is true.
+  void moving(bool coarse);
+
   [[nodiscard]] const Field& field() const;
   [[nodiscard]] const std::vector<Field>& fields() const;
   /// Of the field; "no arrays" without any.

@@ -57,89 +57,127 @@ vtkSmartPointer<vtkPlaneCollection> planes_of(const std::vector<Clip>& clips) {
 }
 
 Surface::Surface(vtkRenderer& renderer) {
-  for (Layer& l : layers_) {
-    l.data = vtkSmartPointer<vtkPolyData>::New();
-    l.mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
-    l.actor = vtkSmartPointer<vtkActor>::New();
-    l.mapper->SetInputData(l.data);
-    l.mapper->StaticOn();
-    l.actor->SetMapper(l.mapper);
-    renderer.AddActor(l.actor);
-  }
-  layer(Side::Front).actor->GetProperty()->BackfaceCullingOn();
-  layer(Side::Back).actor->GetProperty()->FrontfaceCullingOn();
+  for (Details& side : layers_)
+    for (Layer& l : side) {
+      l.data = vtkSmartPointer<vtkPolyData>::New();
+      l.mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+      l.actor = vtkSmartPointer<vtkActor>::New();
+      l.mapper->SetInputData(l.data);
+      l.mapper->StaticOn();
+      l.mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(3.0, 3.0);
+      l.actor->SetMapper(l.mapper);
+      l.actor->GetProperty()->SetInterpolationToFlat();
+      renderer.AddActor(l.actor);
+    }
 }
 
-void Surface::set_geometry(const Mesh& mesh, const Triangles& triangles) {
+void Surface::set_geometry(const Mesh& mesh, const Triangles& triangles, const Triangles& coarse) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.polygons.points.size()));
   for (std::size_t i = 0; i < mesh.polygons.points.size(); ++i)
     points->SetPoint(static_cast<vtkIdType>(i), mesh.polygons.points[i].data());
-  const auto cells = cells_of(triangles);
-  polygon_ = triangles.polygon;
-  for (Layer& l : layers_) {
-    l.data->Initialize();
-    l.data->SetPoints(points);
-    l.data->SetPolys(cells);
+  for (const std::size_t detail : {0u, 1u}) {
+    const Triangles& t = detail == 0 ? triangles : coarse;
+    const auto cells = cells_of(t);
+    for (Details& side : layers_) {
+      side[detail].data->Initialize();
+      side[detail].data->SetPoints(points);
+      side[detail].data->SetPolys(cells);
+      side[detail].polygon = t.polygon;
+    }
   }
 }
 
-void Surface::colour(Side side, const Values& values, vtkLookupTable* table) {
-  Layer& l = layer(side);
-  const bool points = values.place == Place::Points;
-  vtkNew<vtkFloatArray> numbers;
-  numbers->SetNumberOfValues(static_cast<vtkIdType>(points ? values.size() : polygon_.size()));
-  spread(
-      values.place, values.size(), polygon_, [&](std::size_t i) { return values.numbers[i]; },
-      [&](std::size_t i, float v) { numbers->SetValue(static_cast<vtkIdType>(i), v); });
-  l.data->GetPointData()->SetScalars(points ? numbers.Get() : nullptr);
-  l.data->GetCellData()->SetScalars(points ? nullptr : numbers.Get());
-  points ? l.mapper->SetScalarModeToUsePointData() : l.mapper->SetScalarModeToUseCellData();
-  l.mapper->SetColorModeToMapScalars();
-  l.mapper->SetInterpolateScalarsBeforeMapping(points);
-  l.mapper->SetLookupTable(table);
-  l.mapper->UseLookupTableScalarRangeOn();
+namespace {
+
+void set_scalars(vtkPolyData& data, vtkPolyDataMapper& mapper, Place place, vtkDataArray* scalars) {
+  const bool points = place == Place::Points;
+  data.GetPointData()->SetScalars(points ? scalars : nullptr);
+  data.GetCellData()->SetScalars(points ? nullptr : scalars);
+  points ? mapper.SetScalarModeToUsePointData() : mapper.SetScalarModeToUseCellData();
 }
 
-void Surface::colour(Side side, Place place, const std::vector<Colour>& colours) {
-  Layer& l = layer(side);
-  const bool points = place == Place::Points;
-  vtkNew<vtkUnsignedCharArray> rgb;
-  rgb->SetNumberOfComponents(3);
-  rgb->SetNumberOfTuples(static_cast<vtkIdType>(points ? colours.size() : polygon_.size()));
+vtkSmartPointer<vtkFloatArray> numbers_for(const Values& values,
+                                           const std::vector<std::uint32_t>& polygon) {
+  auto numbers = vtkSmartPointer<vtkFloatArray>::New();
+  const bool points = values.place == Place::Points;
+  numbers->SetNumberOfValues(static_cast<vtkIdType>(points ? values.size() : polygon.size()));
   spread(
-      place, colours.size(), polygon_, [&](std::size_t i) { return colours[i]; },
+      values.place, values.size(), polygon, [&](std::size_t i) { return values.numbers[i]; },
+      [&](std::size_t i, float v) { numbers->SetValue(static_cast<vtkIdType>(i), v); });
+  return numbers;
+}
+
+vtkSmartPointer<vtkUnsignedCharArray> colours_for(Place place, const std::vector<Colour>& colours,
+                                                  const std::vector<std::uint32_t>& polygon) {
+  auto rgb = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  rgb->SetNumberOfComponents(3);
+  rgb->SetNumberOfTuples(
+      static_cast<vtkIdType>(place == Place::Points ? colours.size() : polygon.size()));
+  spread(
+      place, colours.size(), polygon, [&](std::size_t i) { return colours[i]; },
       [&](std::size_t i, const Colour& c) {
         rgb->SetTypedTuple(static_cast<vtkIdType>(i), c.data());
       });
-  l.data->GetPointData()->SetScalars(points ? rgb.Get() : nullptr);
-  l.data->GetCellData()->SetScalars(points ? nullptr : rgb.Get());
-  points ? l.mapper->SetScalarModeToUsePointData() : l.mapper->SetScalarModeToUseCellData();
-  l.mapper->SetColorModeToDirectScalars();
-  l.mapper->InterpolateScalarsBeforeMappingOff();
+  return rgb;
 }
 
-void Surface::show(const Shown& shown, const std::vector<Clip>& clips) {
-  const auto planes = planes_of(clips);
-  for (const Side side : {Side::Front, Side::Back}) {
-    Layer& l = layer(side);
-    l.actor->SetVisibility(side == Side::Front ? shown.front : shown.back);
-    vtkProperty* look = l.actor->GetProperty();
-    look->SetBackfaceCulling(shown.only_facing && side == Side::Front);
-    look->SetFrontfaceCulling(shown.only_facing && side == Side::Back);
-    look->SetLighting(shown.lit);
-    look->SetAmbient(shown.lit ? 0.55 : 0.0);
-    look->SetDiffuse(shown.lit ? 0.45 : 1.0);
-    look->SetInterpolationToFlat();
-    // Costs time at every pixel: not without need.
-    if (shown.behind_lines)
-      l.mapper->SetResolveCoincidentTopologyToPolygonOffset();
-    else
-      l.mapper->SetResolveCoincidentTopologyToOff();
-    l.mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(3.0, 3.0);
-    l.mapper->SetClippingPlanes(planes);
+}  // namespace
+
+void Surface::colour(Side side, const Values& values, vtkLookupTable* table) {
+  for (Layer& l : details(side)) {
+    set_scalars(*l.data, *l.mapper, values.place, numbers_for(values, l.polygon));
+    l.mapper->SetColorModeToMapScalars();
+    l.mapper->SetInterpolateScalarsBeforeMapping(values.place == Place::Points);
+    l.mapper->SetLookupTable(table);
+    l.mapper->UseLookupTableScalarRangeOn();
   }
+}
+
+void Surface::colour(Side side, Place place, const std::vector<Colour>& colours) {
+  for (Layer& l : details(side)) {
+    set_scalars(*l.data, *l.mapper, place, colours_for(place, colours, l.polygon));
+    l.mapper->SetColorModeToDirectScalars();
+    l.mapper->InterpolateScalarsBeforeMappingOff();
+  }
+}
+
+void Surface::show(const Shown& shown) {
+  shown_ = shown;
+  // For all mappers there are. Costs time at every pixel: not without need.
+  if (shown.behind_lines)
+    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
+  else
+    vtkMapper::SetResolveCoincidentTopologyToOff();
+  for (const Side side : {Side::Front, Side::Back})
+    for (Layer& l : details(side)) {
+      vtkProperty* look = l.actor->GetProperty();
+      look->SetBackfaceCulling(shown.only_facing && side == Side::Front);
+      look->SetFrontfaceCulling(shown.only_facing && side == Side::Back);
+      look->SetLighting(shown.lit);
+      look->SetAmbient(shown.lit ? 0.55 : 0.0);
+      look->SetDiffuse(shown.lit ? 0.45 : 1.0);
+    }
+  update_visibility();
+}
+
+void Surface::clip(const std::vector<Clip>& clips) {
+  const auto planes = planes_of(clips);
+  for (Details& side : layers_)
+    for (Layer& l : side) l.mapper->SetClippingPlanes(planes);
+}
+
+void Surface::moving(bool coarse) {
+  coarse_ = coarse;
+  update_visibility();
+}
+
+void Surface::update_visibility() {
+  for (const Side side : {Side::Front, Side::Back})
+    for (const std::size_t detail : {0u, 1u})
+      details(side)[detail].actor->SetVisibility(
+          (side == Side::Front ? shown_.front : shown_.back) && (detail == 1) == coarse_);
 }
 
 }  // namespace atrium::view

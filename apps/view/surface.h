@@ -28,7 +28,8 @@ class Surface {
  public:
   explicit Surface(vtkRenderer& renderer);
 
-  void set_geometry(const Mesh& mesh, const Triangles& triangles);
+  /// \param coarse  the same with fewer triangles, for moving().
+  void set_geometry(const Mesh& mesh, const Triangles& triangles, const Triangles& coarse);
   /// Numbers go through the table at every pixel, not at corners only.
   void colour(Side side, const Values& values, vtkLookupTable* table);
   void colour(Side side, Place place, const std::vector<Colour>& colours);
@@ -39,18 +40,26 @@ class Surface {
     bool lit = false;                ///< shaded, so that shapes are seen
     bool behind_lines = false;       ///< a little farther away, so that lines on it are seen
   };
-  void show(const Shown& shown, const std::vector<Clip>& clips);
+  void show(const Shown& shown);
+  void clip(const std::vector<Clip>& clips);
+  /// Draws the coarse triangles while it is true.
+  void moving(bool coarse);
 
  private:
   struct Layer {
     vtkSmartPointer<vtkPolyData> data;
     vtkSmartPointer<vtkPolyDataMapper> mapper;
     vtkSmartPointer<vtkActor> actor;
+    std::vector<std::uint32_t> polygon;  ///< by triangle
   };
-  Layer& layer(Side side) { return layers_[static_cast<std::size_t>(side)]; }
+  /// As they are, and coarse.
+  using Details = std::array<Layer, 2>;
+  Details& details(Side side) { return layers_[static_cast<std::size_t>(side)]; }
+  void update_visibility();
 
-  std::array<Layer, 2> layers_;
-  std::vector<std::uint32_t> polygon_;  ///< by triangle
+  std::array<Details, 2> layers_;  ///< by side
+  Shown shown_;
+  bool coarse_ = false;
 };
 
 }  // namespace atrium::view

@@ -83,6 +83,12 @@ void Window::connect() {
   interactor_->AddObserver(vtkCommand::KeyPressEvent,
                            call([this] { key(interactor_->GetKeySym()); }));
   interactor_->AddObserver(vtkCommand::TimerEvent, call([this] { poll(); }));
+  navigation_->AddObserver(vtkCommand::StartInteractionEvent,
+                           call([this] { stage_.picture().moving(true); }));
+  navigation_->AddObserver(vtkCommand::EndInteractionEvent, call([this] {
+                             stage_.picture().moving(false);
+                             stage_.window().Render();
+                           }));
   interactor_->AddObserver(vtkCommand::ConfigureEvent,
                            call([this] { stage_.overlay().fit(stage_.window().GetSize()[1]); }));
 }

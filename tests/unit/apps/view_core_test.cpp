@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "ceilings.h"
+#include "coarse.h"
 #include "colours.h"
 #include "contour_lines.h"
 #include "element_edges.h"
@@ -170,6 +171,30 @@ TEST(ViewTriangles, ConcavePolygonsAreCutByEars) {
   for (const auto& c : t.corners) area += triangle_area(m, c);
   EXPECT_EQ(t.size(), 4u);
   EXPECT_NEAR(area, 5.0, 1e-12);
+}
+
+// While it moves: fewer triangles of nearly the same area, in the same planes.
+TEST(ViewTriangles, CoarseOnesKeepPlanesAndArea) {
+  scene::PolygonMesh p;
+  const int n = 100;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) p.points.emplace_back(0.04 * i, 1.0, 0.03 * j);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const auto at = static_cast<std::uint32_t>(j * (n + 1) + i);
+      for (const std::uint32_t k : {at, at + n + 1, at + n + 2, at + 1})
+        p.polygon_points.push_back(k);
+      p.polygon_sizes.push_back(4);
+    }
+  const Mesh m = make_mesh(std::move(p), "m");
+  const Triangles all = triangulate(m);
+  const Triangles coarse = coarsen(m, all, 1000);
+  EXPECT_LT(coarse.size(), 1500u);
+  EXPECT_GT(coarse.size(), 500u);
+  double area = 0.0;
+  for (const auto& c : coarse.corners) area += triangle_area(m, c);
+  EXPECT_NEAR(area, 12.0, 1.0);  // without up to a cell of 0.15 m at two rims
+  EXPECT_EQ(coarsen(m, all, all.size()).corners, all.corners);
 }
 
 TEST(ViewFields, KnownOnesInOrderAndByArrayName) {
