@@ -47,6 +47,7 @@ struct LookOptions {
 
 /// How a scene is solved.
 struct SolveChoice {
+  bool shooting = false;  ///< solver 'shooting' instead of 'rows'
   app::Quality quality = app::Quality::Draft;
   double error = 0.0;       ///< asked for; 0: the effort of the quality
   double time_limit = 0.0;  ///< [s]; 0: none

@@ -18,7 +18,7 @@ namespace {
 /// Texts of options that are checked and converted together after parsing.
 struct Texts {
   std::string size, range, contours, exposure = "auto", side = "seen", quality = "draft",
-                                     emissive_unit = "nit";
+                                     solver = "rows", emissive_unit = "nit";
   std::vector<std::string> clips, weights;
   bool light_groups = false, no_pane_detection = false;
 };
@@ -63,6 +63,9 @@ void add_solve(CLI::App& app, ViewCommand& o, Texts& t) {
   app.add_flag("--solve", o.live, "show a scene's solution while it converges");
   app.add_option("--quality", t.quality, "effort for a scene: draft, normal or high")
       ->check(CLI::IsMember({"draft", "normal", "high"}))
+      ->capture_default_str();
+  app.add_option("--solver", t.solver, "rows, or shooting (diffuse scenes only)")
+      ->check(CLI::IsMember({"rows", "shooting"}))
       ->capture_default_str();
   app.add_option("--error", o.solve.error,
                  "go on until the RMS of irradiance is below this share of it (0.02: 2 %); 0: the "
@@ -131,8 +134,12 @@ void check(const CLI::App& app, const ViewCommand& o) {
   for (const std::string& f : o.files)
     solved += is(is_mesh_file, f) || scene::file_ending(f) == ".atrium" ? 1 : 0;
   if (solved > 1) throw Error(o.files.back() + ": one mesh or solution at a time");
+  if (o.solve.shooting)
+    for (const char* name : {"--error", "--light-groups", "--weights"})
+      if (app.count(name) > 0) throw Error(std::string(name) + ": only with --solver rows");
   if (solved > 0)
-    for (const char* name : {"--solve", "--quality", "--error", "--time-limit", "--seed"})
+    for (const char* name :
+         {"--solve", "--solver", "--quality", "--error", "--time-limit", "--seed"})
       if (app.count(name) > 0)
         throw Error(std::string(name) + ": nothing is solved with a mesh or a solution");
   if (!o.screenshot.empty()) {
@@ -154,6 +161,7 @@ ViewCommand finish(ViewCommand o, const Texts& t, const CLI::App& app) {
   o.solve.quality = t.quality == "draft"    ? app::Quality::Draft
                     : t.quality == "normal" ? app::Quality::Normal
                                             : app::Quality::High;
+  o.solve.shooting = t.solver == "shooting";
   o.solve.groups = t.light_groups ? scene::Grouping::ByName : scene::Grouping::Declared;
   // 179 lm/W: the luminous efficacy of white light where watts have to become lumens.
   o.solve.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;

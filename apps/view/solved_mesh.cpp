@@ -97,6 +97,7 @@ Mesh mesh_of(const LoadedScene& loaded, const radiosity::Elements& elements,
 radiosity::SolveOptions solve_options(const SolveChoice& choice) {
   const app::Effort effort = app::effort_of(choice.quality);
   radiosity::SolveOptions o;
+  o.solver = choice.shooting ? radiosity::Solver::Shooting : radiosity::Solver::Rows;
   o.max_elements = effort.max_elements;
   o.row_rays = effort.row_rays;
   o.gather_rays = effort.gather_rays;
@@ -105,7 +106,7 @@ radiosity::SolveOptions solve_options(const SolveChoice& choice) {
   o.seed = choice.seed;
   o.error = choice.error;
   o.time_limit = choice.time_limit;
-  o.light_groups = choice.groups;
+  o.light_groups = choice.shooting ? scene::Grouping::One : choice.groups;  // it knows none
   return o;
 }
 

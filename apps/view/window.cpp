@@ -43,6 +43,7 @@ ViewCommand for_bare_mesh(ViewCommand c) {
   c.look.camera = asked.camera;
   c.look.clips = asked.clips;
   c.look.no_ceilings = asked.no_ceilings;
+  c.look.no_legend = true;
   return c;
 }
 

@@ -104,13 +104,11 @@ class RowSolver {
     if (stage_ == Stage::Light) {
       work_.begin("direct light", 0.15);
       draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
+      show_direct();
       work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
       photons_ = trace_photons(problem_, work_, counters_);
       (void)paused(Stage::Light);
-      if (problem_.options.watch) {
-        take_direct();
-        show_bounces(Bounces::Ambient);
-      }
+      if (problem_.specular) show_direct();
     }
     if (stage_ <= Stage::Rows) build_rows();
     work_.begin("gathering", 0.98);
@@ -126,7 +124,7 @@ class RowSolver {
     result_.state = std::move(state_);
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
     for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
-      result_.groups.push_back(estimate_of(std::move(groups_[g]), std::move(group_variances_[g])));
+      result_.groups.push_back(part_of(std::move(groups_[g]), std::move(group_variances_[g])));
     return std::move(result_);
   }
 
@@ -610,8 +608,17 @@ class RowSolver {
     if (!problem_.options.watch) return;
     Solution<N> now = result_;
     for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
-      now.groups.push_back(estimate_of(groups_[g], group_variances_[g]));
+      now.groups.push_back(part_of(groups_[g], group_variances_[g]));
     hand_out(problem_, std::move(now));
+  }
+
+  /// For who watches: light straight from the lights, the rest by and large.
+  void show_direct() {
+    if (!problem_.options.watch) return;
+    photons_.caustic.resize(groups_.size(),
+                            Estimate<N>(problem_.side_count(), problem_.sides.any_coupled));
+    take_direct();
+    show_bounces(Bounces::Ambient);
   }
 
   enum class Bounces { Ambient, Rows };
@@ -737,7 +744,7 @@ class RowSolver {
   };
 
   /// A group's part, for whoever dims the lights later.
-  static GroupEstimate<N> estimate_of(GroupLight<N> g, Variances v) {
+  static GroupEstimate<N> part_of(GroupLight<N> g, Variances v) {
     for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
     return {std::move(g.direct), std::move(g.caustic), std::move(g.indirect), std::move(v.direct),
             std::move(v.indirect)};

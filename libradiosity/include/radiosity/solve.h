@@ -78,9 +78,9 @@ struct SolveOptions {
   scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
   bool paper_weights = false;  ///< scene::Weights::Paper: for pictures in paper mode
   int probes = 0;              ///< points of the Certificate; 0: none is made
-  /// Called by the thread that solves, after direct light, rows and every round of samples, or now
-  /// and then while patches are shot; what it is given lives for the call. Changes no bit of the
-  /// result.
+  /// Called by the thread that solves, after direct light, caustics, rows and every round of
+  /// samples, or now and then while patches are shot; what it is given lives for the call. Changes
+  /// no bit of the result.
   std::function<void(const Snapshot&)> watch = {};
 };
 
