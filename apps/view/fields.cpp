@@ -36,9 +36,13 @@ const Array* any_array(const Mesh& mesh, const std::string& name) {
   return find_array(mesh.polygons.point_arrays, name);
 }
 
-std::string unit_of(const Mesh& mesh) {
+/// Irradiance is in lux where what leaves a surface is in lumens per square metre.
+std::string unit_of(const Mesh& mesh, const Known& field) {
   const auto unit = mesh.polygons.field_data.find("unit");
-  return unit == mesh.polygons.field_data.end() ? "" : unit->second;
+  if (unit == mesh.polygons.field_data.end() || !field.has_unit) return "";
+  const std::string_view array = field.array;
+  const bool leaves = array == "radiosity" || array == "emission";
+  return leaves && unit->second == "lx" ? "lm/m^2" : unit->second;
 }
 
 std::string with_unit(const std::string& title, const std::string& unit) {
@@ -72,11 +76,8 @@ std::vector<Field> fields_of(const Mesh& mesh) {
     if (array == nullptr) continue;
     if (k.look == Look::TrueColour && array->components != 3) continue;
     const bool lux = std::string_view(k.name) == "illuminance";
-    fields.push_back({k.name,
-                      with_unit(k.title, lux          ? "lx"
-                                         : k.has_unit ? unit_of(mesh)
-                                                      : ""),
-                      k.array, k.look, k.sided, lux});
+    fields.push_back(
+        {k.name, with_unit(k.title, lux ? "lx" : unit_of(mesh, k)), k.array, k.look, k.sided, lux});
   }
   // Without irradiance, the illuminance that somebody wrote alone.
   if (any_array(mesh, "irradiance") == nullptr && any_array(mesh, "illuminance_lux") != nullptr)

@@ -16,7 +16,7 @@ std::string live_text(bool finished, const std::string& stage, double fraction, 
                   100.0 * fraction, seconds);
   std::string line = text;
   if (error > 0.0) {
-    std::snprintf(text, sizeof text, ", error %.2g %%", 100.0 * error);
+    std::snprintf(text, sizeof text, ", error %.3g %%", 100.0 * error);
     line += text;
   }
   return line;
@@ -48,12 +48,16 @@ void LiveSolve::solve(std::stop_token stop) {
   radiosity::SolveOptions options = solve_options(choice_);
   options.watch = [&](const radiosity::Snapshot& s) {
     if (!stop.stop_requested())
-      publish(mesh_of(loaded_, s.elements, s.field, s.groups), s.error_estimate);
+      publish(mesh_of(loaded_, s.elements, s.field, {}), s.error_estimate);
   };
   const radiosity::SolveResult r =
       radiosity::solve(*loaded_.query, loaded_.basis, options, control);
   if (stop.stop_requested()) return;
-  publish(mesh_of(loaded_, r.elements, r.field, r.groups), r.error_estimate);
+  publish(mesh_of(loaded_, r.elements, r.field, {}), r.error_estimate);
+  if (r.groups.size() > 1) {
+    control.report("light groups", 1.0, "light groups");
+    publish(mesh_of(loaded_, r.elements, r.field, r.groups), r.error_estimate);
+  }
   const std::scoped_lock lock(mutex_);
   finished_ = true;
   seconds_ = std::chrono::duration<double>(Clock::now() - start_).count();

@@ -11,7 +11,8 @@
 
 namespace atrium::view {
 
-/// A scene that is solved on a thread of its own. Ends the solve when it is destroyed.
+/// A scene that is solved on a thread of its own. The parts of light groups come with the last
+/// state: they take as long as a state each. Ends the solve when it is destroyed.
 class LiveSolve : public MeshSource {
  public:
   LiveSolve(LoadedScene loaded, const SolveChoice& choice);

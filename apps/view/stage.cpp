@@ -90,6 +90,12 @@ void Stage::set_weight(std::size_t group, double factor) {
   picture_->set_mesh(document_.mesh, true);
 }
 
+void Stage::set_weights(const std::vector<std::pair<std::string, double>>& factors) {
+  for (const auto& [group, factor] : factors) weights_.set(group, factor);
+  weights_.apply(document_.mesh);
+  picture_->set_mesh(document_.mesh, true);
+}
+
 void Stage::set_mesh(Mesh mesh) {
   const bool same = same_geometry(mesh.polygons, document_.mesh.polygons);
   Weights weights(mesh);
@@ -102,11 +108,9 @@ void Stage::set_mesh(Mesh mesh) {
 }
 
 void Stage::start_again(const LookOptions& look) {
-  weights_ = initial_weights(look, document_.mesh);
   const std::vector<Clip> clips = state.clips;
   state = initial_state(look, document_.mesh);
   state.clips = clips;
-  if (!weights_.as_solved()) weights_.apply(document_.mesh);
   picture_->set_mesh(document_.mesh, true);
 }
 

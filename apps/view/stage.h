@@ -41,6 +41,8 @@ class Stage {
 
   void look_from(const ViewPoint& view);
   void set_weight(std::size_t group, double factor);
+  /// By names.  \throws Error  for unknown ones.
+  void set_weights(const std::vector<std::pair<std::string, double>>& factors);
   /// A newer state of the same scene; field, camera, weights and selection stay.
   void set_mesh(Mesh mesh);
   /// Shows what the options ask for, as if the mesh had been there from the beginning; camera and

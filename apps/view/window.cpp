@@ -53,6 +53,7 @@ Window::Window(Document document, const ViewCommand& command, std::unique_ptr<Me
     : command_(command),
       source_(std::move(source)),
       bare_(source_ != nullptr),
+      weights_pending_(bare_ && !command.look.weights.empty()),
       stage_(std::move(document), bare_ ? for_bare_mesh(command) : command, false),
       histogram_(stage_.renderer()),
       interactor_(vtkSmartPointer<vtkRenderWindowInteractor>::New()),
@@ -112,6 +113,11 @@ void Window::poll() {
     const bool news = mesh || status.text != message_;
     message_ = status.text;
     if (mesh) take_mesh(std::move(*mesh));
+    if (weights_pending_ && (status.finished || !stage_.weights().groups().empty())) {
+      weights_pending_ = false;
+      stage_.set_weights(command_.look.weights);
+      sliders_->set_groups(stage_.weights().groups(), stage_.weights().factors());
+    }
     if (status.finished) source_.reset();
     if (news) redraw();
   } catch (...) {
@@ -127,7 +133,9 @@ void Window::take_mesh(Mesh mesh) {
   probe_.reset();
   if (bare_) {
     bare_ = false;
-    stage_.start_again(command_.look);
+    LookOptions look = command_.look;
+    look.weights.clear();
+    stage_.start_again(look);
   }
   if (stage_.weights().groups() != before)
     sliders_->set_groups(stage_.weights().groups(), stage_.weights().factors());

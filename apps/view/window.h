@@ -65,7 +65,8 @@ class Window {
 
   ViewCommand command_;
   std::unique_ptr<MeshSource> source_;
-  bool bare_;  ///< the first state of the source is still to come
+  bool bare_;             ///< the first state of the source is still to come
+  bool weights_pending_;  ///< no state of it had light groups yet
   Stage stage_;
   HistogramPanel histogram_;
   vtkSmartPointer<vtkRenderWindowInteractor> interactor_;

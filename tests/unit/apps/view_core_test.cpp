@@ -202,6 +202,7 @@ TEST(ViewFields, KnownOnesInOrderAndByArrayName) {
   const std::vector<Field> fields = fields_of(m);
   ASSERT_FALSE(fields.empty());
   EXPECT_EQ(fields[0].name, "radiosity");
+  EXPECT_EQ(fields[0].title, "radiosity [lm/m^2]");
   EXPECT_EQ(find_field(fields, ""), 0u);
   EXPECT_EQ(fields[find_field(fields, "illuminance_lux")].title, "illuminance [lx]");
   EXPECT_EQ(find_field(fields, "stderr"), find_field(fields, "error"));

@@ -326,8 +326,7 @@ TEST(ViewWindow, NewerStatesAreShownAsTheyCome) {
   half.set("lamp", 0.5);
   half.apply(dim);
   script->states = {dim, document().mesh};
-  ViewCommand c = command("illuminance");
-  Window window(bare_document(), c, std::move(script));
+  Window window(bare_document(), command("illuminance"), std::move(script));
   const auto brightest = [&] { return window.stage().picture().statistics().maximum; };
   window.poll();
   EXPECT_EQ(window.stage().picture().title(), "illuminance [lx]");
@@ -336,6 +335,24 @@ TEST(ViewWindow, NewerStatesAreShownAsTheyCome) {
   window.poll();
   EXPECT_GT(brightest(), 1.5 * first);
   window.poll();
+}
+
+// Weights wait for the first state that has light groups.
+TEST(ViewWindow, WeightsWaitForLightGroups) {
+  ATRIUM_NEEDS_DISPLAY();
+  auto script = std::make_unique<Script>();
+  Mesh without = document().mesh;
+  for (auto* arrays : {&without.polygons.cell_arrays, &without.polygons.point_arrays})
+    std::erase_if(*arrays, [](const Array& a) { return a.name.find('.') != std::string::npos; });
+  script->states = {without, document().mesh};
+  ViewCommand c = command("illuminance");
+  c.look.weights = {{"lamp", 0.0}};
+  Window window(bare_document(), c, std::move(script));
+  window.poll();
+  EXPECT_GT(window.stage().picture().statistics().maximum, 400.0);
+  window.poll();
+  EXPECT_LE(window.stage().picture().statistics().maximum, 200.0);  // the strip alone
+  EXPECT_EQ(window.sliders().size(), 2u);
 }
 
 /// Leaves with 7 for an error, 0 if the window was closed.
