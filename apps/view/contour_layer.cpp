@@ -114,7 +114,7 @@ void ContourLayer::place() {
     const ViewRay ray = view_ray(*renderer_.GetActiveCamera(), aspect,
                                  2.0 * at->x() / extent[0] - 1.0, 2.0 * at->y() / extent[1] - 1.0);
     const auto hit = pick_(ray.origin, ray.direction);
-    if (!hit || (hit->position - label.position).norm() > 0.01 * size_) continue;
+    if (!hit || (hit->position - label.position).norm() > 0.0015 * size_) continue;
     if (used.size() == texts_.size()) texts_.push_back(make_text(renderer_));
     vtkTextActor& text = *texts_[used.size()];
     char value[32];

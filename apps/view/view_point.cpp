@@ -16,8 +16,8 @@ namespace {
 /// What most polygons are in: a ground plane of a kilometre or a far sky does not make a building a
 /// dot.
 Eigen::AlignedBox3d box_of(const Mesh& mesh) {
-  constexpr double kOutside = 0.02;  // share of the polygons, at either end
-  constexpr double kMuch = 3.0;      // only if that makes the box so much smaller
+  constexpr double kOutside = 0.1;  // share of the polygons, at either end
+  constexpr double kMuch = 3.0;     // only if that makes the box so much smaller
   std::array<std::vector<double>, 3> places;
   Eigen::AlignedBox3d all;
   for (std::size_t k = 0; k < mesh.polygon_count(); ++k) {
@@ -34,7 +34,7 @@ Eigen::AlignedBox3d box_of(const Mesh& mesh) {
     low[axis] = v[outside];
     high[axis] = v[v.size() - 1 - outside];
   }
-  const Vec3d margin = Vec3d::Constant(0.03 * (high - low).norm());
+  const Vec3d margin = 0.15 * (high - low) + Vec3d::Constant(0.01 * (high - low).norm());
   const Eigen::AlignedBox3d most(low - margin, high + margin);
   return most.diagonal().norm() * kMuch < all.diagonal().norm() ? most : all;
 }
