@@ -49,9 +49,9 @@ void HistogramPanel::show(const Statistics& statistics, const std::string& title
   bars->SetInputData(table, 0, 1);
   bars->SetColor(90, 170, 220, 255);
   const int* size = renderer_.GetSize();
-  chart_->SetSize(vtkRectf(0.60f * static_cast<float>(size[0]), 0.02f * static_cast<float>(size[1]),
-                           0.38f * static_cast<float>(size[0]),
-                           0.32f * static_cast<float>(size[1])));
+  const auto share = [&](float x, int of) { return x * static_cast<float>(size[of]); };
+  // Between probe and legend.
+  chart_->SetSize(vtkRectf(share(0.44f, 0), share(0.10f, 1), share(0.38f, 0), share(0.32f, 1)));
   for (const int position : {vtkAxis::LEFT, vtkAxis::BOTTOM}) {
     vtkAxis* axis = chart_->GetAxis(position);
     axis->GetTitleProperties()->SetColor(1.0, 1.0, 1.0);

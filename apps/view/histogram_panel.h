@@ -10,7 +10,7 @@ class vtkRenderer;
 
 namespace atrium::view {
 
-/// How much area has which value, at the bottom right.
+/// How much area has which value, left of the legend.
 class HistogramPanel {
  public:
   explicit HistogramPanel(vtkRenderer& renderer);

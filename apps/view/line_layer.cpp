@@ -46,7 +46,7 @@ void LineLayer::show_edges(const Mesh& mesh, const std::vector<std::uint8_t>& sh
   data->SetLines(lines);
   mapper_->SetInputData(data);
   has_lines_ = true;
-  hide(false);
+  update_visibility();
 }
 
 void LineLayer::show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& selected) {
@@ -66,7 +66,7 @@ void LineLayer::show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& 
   edges->Update();
   mapper_->SetInputData(edges->GetOutput());
   has_lines_ = true;
-  hide(false);
+  update_visibility();
 }
 
 void LineLayer::clip(const std::vector<Clip>& clips) {
@@ -76,9 +76,14 @@ void LineLayer::clip(const std::vector<Clip>& clips) {
 void LineLayer::clear() {
   mapper_->SetInputData(vtkSmartPointer<vtkPolyData>::New());
   has_lines_ = false;
-  hide(false);
+  update_visibility();
 }
 
-void LineLayer::hide(bool hidden) { actor_->SetVisibility(has_lines_ && !hidden); }
+void LineLayer::hide(bool hidden) {
+  hidden_ = hidden;
+  update_visibility();
+}
+
+void LineLayer::update_visibility() { actor_->SetVisibility(has_lines_ && !hidden_); }
 
 }  // namespace atrium::view

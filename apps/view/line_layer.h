@@ -25,13 +25,14 @@ class LineLayer {
   void show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& selected);
   void clip(const std::vector<Clip>& clips);
   void clear();
-  /// For a while.
+  /// Until it is told otherwise, whatever it is given.
   void hide(bool hidden);
 
  private:
   vtkSmartPointer<vtkPolyDataMapper> mapper_;
   vtkSmartPointer<vtkActor> actor_;
-  bool has_lines_ = false;
+  void update_visibility();
+  bool has_lines_ = false, hidden_ = false;
 };
 
 }  // namespace atrium::view

@@ -15,7 +15,7 @@ namespace atrium::view {
 namespace {
 
 constexpr double kMost = 2.0;
-constexpr std::size_t kRows = 12;  // then the next column
+constexpr std::size_t kRows = 8;  // then the next column
 
 class Moved : public vtkCommand {
  public:
@@ -31,7 +31,7 @@ vtkSmartPointer<vtkSliderRepresentation2D> representation(const std::string& gro
                                                           std::size_t index) {
   auto r = vtkSmartPointer<vtkSliderRepresentation2D>::New();
   const double x = 0.02 + 0.2 * static_cast<double>(index / kRows);
-  const double y = 0.84 - 0.065 * static_cast<double>(index % kRows);
+  const double y = 0.78 - 0.085 * static_cast<double>(index % kRows);
   r->GetPoint1Coordinate()->SetCoordinateSystemToNormalizedDisplay();
   r->GetPoint1Coordinate()->SetValue(x, y);
   r->GetPoint2Coordinate()->SetCoordinateSystemToNormalizedDisplay();

@@ -259,8 +259,8 @@ TEST(ViewWindow, SlidersDimAtOnce) {
   ASSERT_TRUE(user.window.sliders().shown());
   ASSERT_EQ(user.window.sliders().size(), 2u);
   user.point_at(kOnFloor);
-  // From 1 (the middle of x = 0.02 .. 0.19) at y = 0.84.
-  const int y = static_cast<int>(0.84 * kHeight);
+  // From 1 (the middle of x = 0.02 .. 0.19) at y = 0.78.
+  const int y = static_cast<int>(0.78 * kHeight);
   user.drag(static_cast<int>(0.105 * kWidth), y, static_cast<int>(0.01 * kWidth), y);
   EXPECT_LT(user.window.stage().weights().factors()[0], 0.05);
   EXPECT_EQ(user.window.stage().weights().factors()[1], 1.0);
