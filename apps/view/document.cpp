@@ -84,14 +84,6 @@ Mesh mesh_of_scene([[maybe_unused]] const LoadedScene& loaded, [[maybe_unused]] 
 
 }  // namespace
 
-bool radiosity_available() {
-#ifdef ATRIUM_WITH_RADIOSITY
-  return true;
-#else
-  return false;
-#endif
-}
-
 void add_standard_views(const Mesh& mesh, double aspect, std::vector<ViewPoint>& views) {
   views.push_back(overview(mesh, aspect));
   views.push_back(plan(mesh, aspect));

@@ -25,10 +25,6 @@ struct Document {
 /// Adds overview and plan to views of a scene.
 void add_standard_views(const Mesh& mesh, double aspect, std::vector<ViewPoint>& views);
 
-/// false: this build has no radiosity library (ATRIUM_WITH_OPENMESH was off); then only meshes can
-/// be shown.
-[[nodiscard]] bool radiosity_available();
-
 /// Reads a mesh, with a scene for cameras and names or without; or reads a solution with its
 /// scene; or solves a scene.
 /// \param warn  is given lines for people.

@@ -127,12 +127,9 @@ void finish_look(LookOptions& o, const Texts& t) {
 
 /// Options that would be ignored, or that say two things, are mistakes worth a word.
 void check(const CLI::App& app, const ViewCommand& o) {
-  const auto is = [](bool (*kind)(const std::filesystem::path&), const std::string& file) {
-    return kind(file);
-  };
   std::size_t solved = 0;
   for (const std::string& f : o.files)
-    solved += is(is_mesh_file, f) || scene::file_ending(f) == ".atrium" ? 1 : 0;
+    solved += is_mesh_file(f) || scene::file_ending(f) == ".atrium" ? 1 : 0;
   if (solved > 1) throw Error(o.files.back() + ": one mesh or solution at a time");
   if (o.solve.shooting)
     for (const char* name : {"--error", "--light-groups", "--weights"})

@@ -64,6 +64,7 @@ TEST_F(ViewRun, WrongUsageIsOneLineAndCode2) {
   expect_view_error(view(folder, "room.vtp --hide object=77 --screenshot a.png"), 2, "object=77");
   expect_view_error(view(folder, "room.vtp --statistics object=77"), 2, "object=77");
   expect_view_error(view(folder, "a.atrium --screenshot a.png"), 2, "a.atrium");
+  expect_view_error(view(folder, "a.yaml --solver shooting --error 0.1"), 2, "--error");
   folder.write("cut.vtp", "<VTKFile type=\"PolyData\"><PolyData>");
   expect_view_error(view(folder, "cut.vtp --screenshot a.png"), 2, "cut.vtp");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
