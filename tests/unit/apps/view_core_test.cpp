@@ -146,6 +146,17 @@ TEST(ViewMesh, ForeignFilesShowTheirOwnArraysOrNone) {
             (std::vector<float>{3.5f, 3.5f, 3.5f}));
 }
 
+// Names of materials and objects are texts beside the arrays.
+TEST(ViewMesh, NamesComeWithTheFile) {
+  const TempFolder folder;
+  std::string text = foreign("2", "");
+  text.insert(text.find("<Piece"),
+              "<FieldData><Array type=\"String\" Name=\"material_names\" NumberOfTuples=\"2\" "
+              "format=\"ascii\">111 97 107 0 116 105 110 0</Array></FieldData>");
+  folder.write("named.vtp", text);
+  EXPECT_EQ(read_mesh(folder / "named.vtp").materials, (std::vector<std::string>{"oak", "tin"}));
+}
+
 // A corner in the middle of an edge keeps its value: it is a corner of a triangle with area.
 TEST(ViewTriangles, CornersOnEdgesStayAndAreaIsKept) {
   const Mesh m = make_mesh(
