@@ -32,14 +32,6 @@ struct Files {
   }
 };
 
-void warn_all(const scene::Scene& scene, const std::function<void(const std::string&)>& warn) {
-  constexpr std::size_t kShown = 10;
-  const std::vector<std::string>& all = scene.report.warnings;
-  for (std::size_t i = 0; i < std::min(kShown, all.size()); ++i) warn(all[i]);
-  if (all.size() > kShown)
-    warn(std::to_string(all.size() - kShown) + " more warnings; atrium info lists them");
-}
-
 void name_things(const scene::Scene& scene, Mesh& mesh) {
   if (mesh.materials.empty())
     for (const material::Material& m : scene.materials) mesh.materials.push_back(m.name);
@@ -97,7 +89,7 @@ Document load_document(const ViewCommand& command, const scene::Control& control
   if (!files.mesh.empty()) document.mesh = read_mesh(files.mesh);
   if (!files.scenes.empty()) {
     LoadedScene loaded = load_scene(files.scenes, command.solve);
-    warn_all(*loaded.scene, warn);
+    warn_of_scene(*loaded.scene, warn);
     if (files.mesh.empty())
       document.mesh = mesh_of_scene(loaded, files, command, control, warn);
     else

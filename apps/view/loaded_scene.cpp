@@ -1,5 +1,7 @@
 #include "loaded_scene.h"
 
+#include <algorithm>
+
 #include "material/error.h"
 #include "scene/features.h"
 #include "scene/scene_io.h"
@@ -24,6 +26,14 @@ LoadedScene load_scene(const std::vector<std::string>& files, const SolveChoice&
     loaded.views.push_back(view_of(inside, s.origin, distance));
   }
   return loaded;
+}
+
+void warn_of_scene(const scene::Scene& scene, const std::function<void(const std::string&)>& warn) {
+  constexpr std::size_t kShown = 10;
+  const std::vector<std::string>& all = scene.report.warnings;
+  for (std::size_t i = 0; i < std::min(kShown, all.size()); ++i) warn(all[i]);
+  if (all.size() > kShown)
+    warn(std::to_string(all.size() - kShown) + " more warnings; atrium info lists them");
 }
 
 Mesh bare_mesh(const LoadedScene& loaded) {

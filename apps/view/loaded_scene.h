@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct LoadedScene {
 /// \throws Error.
 [[nodiscard]] LoadedScene load_scene(const std::vector<std::string>& files,
                                      const SolveChoice& options);
+
+/// What loading warned of: the first ten lines.
+void warn_of_scene(const scene::Scene& scene, const std::function<void(const std::string&)>& warn);
 
 /// The scene's triangles with materials and objects, without light.
 [[nodiscard]] Mesh bare_mesh(const LoadedScene& loaded);

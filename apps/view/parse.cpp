@@ -49,13 +49,17 @@ void add_look(CLI::App& app, LookOptions& o, Texts& t) {
   app.add_flag("--edges", o.edges, "edges of elements");
   app.add_flag("--cull", o.cull, "hide faces that are turned away");
   app.add_flag("--no-ceilings", o.no_ceilings, "hide what covers rooms");
+  // One value per mention (allow_extra_args): a file that follows is a file.
   app.add_option("--hide", o.hidden, "object=NAME or material=NAME, may be repeated")
-      ->type_name("WHICH");
+      ->type_name("WHICH")
+      ->allow_extra_args(false);
   app.add_option("--clip", t.clips,
                  "what stays: y<2.4, x>1 or nx,ny,nz<distance [m], may be repeated")
-      ->type_name("PLANE");
+      ->type_name("PLANE")
+      ->allow_extra_args(false);
   app.add_option("--weights", t.weights, "factor of a light group, may be repeated")
-      ->type_name("GROUP=FACTOR");
+      ->type_name("GROUP=FACTOR")
+      ->allow_extra_args(false);
   app.add_flag("--no-legend", o.no_legend, "no scale");
 }
 
@@ -144,8 +148,10 @@ void check(const CLI::App& app, const ViewCommand& o) {
       throw Error(o.screenshot + ": a screenshot is a .png");
     scene::check_output(o.screenshot);
   }
-  if (o.measure_frames > 0 && !o.screenshot.empty())
-    throw Error("--measure-frames: not together with --screenshot");
+  if (o.measure_frames > 0)
+    for (const char* name : {"--screenshot", "--statistics", "--solve"})
+      if (app.count(name) > 0)
+        throw Error("--measure-frames: not together with " + std::string(name));
 }
 
 ViewCommand finish(ViewCommand o, const Texts& t, const CLI::App& app) {

@@ -31,11 +31,11 @@ bool shows(ShownSide shown, Side side) {
 
 std::vector<Legend::Entry> class_entries(const Mesh& mesh, const Field& field,
                                          const std::vector<std::uint8_t>& shown) {
+  const Values ids = numbers_of(mesh, field, Side::Front, false);
   std::map<std::int64_t, double> area;
   for (std::size_t k = 0; k < mesh.polygon_count(); ++k)
-    if (shown[k] != 0)
-      if (const auto id = id_at(mesh, field.array.c_str(), k); id >= 0)
-        area[id] += static_cast<double>(mesh.area(k));
+    if (shown[k] != 0 && ids.numbers[k] >= 0.0f)
+      area[static_cast<std::int64_t>(ids.numbers[k])] += static_cast<double>(mesh.area(k));
   std::vector<std::pair<std::int64_t, double>> largest(area.begin(), area.end());
   std::stable_sort(largest.begin(), largest.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });

@@ -43,7 +43,7 @@ void print_statistics(const ViewCommand& c, Mesh& mesh) {
 void watch_solve(const ViewCommand& c, std::stop_token stop,
                  const std::function<void(const std::string&)>& warn) {
   LoadedScene loaded = load_scene(c.files, c.solve);
-  for (const std::string& line : loaded.scene->report.warnings) warn(line);
+  warn_of_scene(*loaded.scene, warn);
   require_light(loaded);
   Document document{bare_mesh(loaded), loaded.views, c.files.front()};
   add_standard_views(document.mesh, static_cast<double>(c.size[0]) / c.size[1], document.views);

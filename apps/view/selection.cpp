@@ -123,10 +123,10 @@ std::vector<std::uint8_t> selected(const Mesh& mesh, const Selection& selection)
   using Kind = Selection::Kind;
   if (selection.kind == Kind::All) return std::vector<std::uint8_t>(mesh.polygon_count(), 1);
   if (selection.kind == Kind::Facet) return facet_of(mesh, selection.id);
-  const char* array = selection.kind == Kind::Object ? "object_id" : "material_id";
-  std::vector<std::uint8_t> in(mesh.polygon_count());
-  for (std::size_t k = 0; k < in.size(); ++k)
-    in[k] = id_at(mesh, array, k) == static_cast<std::int64_t>(selection.id) ? 1 : 0;
+  const Array* ids = id_array(mesh, selection.kind == Kind::Object ? "object_id" : "material_id");
+  std::vector<std::uint8_t> in(mesh.polygon_count(), 0);
+  for (std::size_t k = 0; k < in.size() && ids != nullptr; ++k)
+    in[k] = ids->values[k] == static_cast<float>(selection.id) ? 1 : 0;
   return in;
 }
 

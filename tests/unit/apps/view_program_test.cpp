@@ -64,6 +64,8 @@ TEST_F(ViewRun, WrongUsageIsOneLineAndCode2) {
   expect_view_error(view(folder, "room.vtp --hide object=77 --screenshot a.png"), 2, "object=77");
   expect_view_error(view(folder, "room.vtp --statistics object=77"), 2, "object=77");
   expect_view_error(view(folder, "a.atrium --screenshot a.png"), 2, "a.atrium");
+  expect_view_error(view(folder, "room.vtp --measure-frames 3 --statistics all"), 2,
+                    "--measure-frames");
   expect_view_error(view(folder, "a.yaml --solver shooting --error 0.1"), 2, "--error");
   folder.write("cut.vtp", "<VTKFile type=\"PolyData\"><PolyData>");
   expect_view_error(view(folder, "cut.vtp --screenshot a.png"), 2, "cut.vtp");
@@ -90,6 +92,15 @@ TEST_F(ViewRun, StatisticsNeedNoDisplayAndFollowWeights) {
   ASSERT_NE(at, std::string::npos) << r.out;
   EXPECT_NEAR(std::stod(r.out.substr(at + 8)), sum / 8.0, 1e-3);
   EXPECT_NE(r.out.find("\"u0\": "), std::string::npos);
+}
+
+// A file may stand behind an option that may be repeated.
+TEST_F(ViewRun, RepeatedOptionsTakeOneValueEach) {
+  const Result r = view(folder,
+                        "--statistics all --field illuminance --weights lamp=0 --weights strip=1 "
+                        "--hide object=0 --clip 'y<2' room.vtp",
+                        "unset DISPLAY; ");
+  EXPECT_EQ(r.code, 0) << r.err;
 }
 
 TEST_F(ViewRun, ShowsAFileWithoutArraysInGrey) {
