@@ -9,31 +9,6 @@
 
 namespace atrium::app {
 
-namespace {
-
-/// Numbers between separators; the whole text must be used up.
-template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const std::string& text, char separator) {
-  std::array<double, N> result{};
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < N; ++i) {
-    const std::size_t end = i + 1 < N ? text.find(separator, at) : text.size();
-    if (end == std::string::npos || end == at) return std::nullopt;
-    const std::string part = text.substr(at, end - at);
-    std::size_t used = 0;
-    try {
-      result[i] = std::stod(part, &used);
-    } catch (const std::exception&) {
-      return std::nullopt;
-    }
-    if (used != part.size() || !std::isfinite(result[i])) return std::nullopt;
-    at = end + 1;
-  }
-  return result;
-}
-
-}  // namespace
-
 std::string shell_word(const std::string& word) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
@@ -61,15 +36,6 @@ double parse_length(const char* option, const std::string& text) {
   return (*n)[0] * unit;
 }
 
-std::pair<std::string, double> parse_factor(const std::string& text) {
-  const std::size_t equals = text.rfind('=');
-  const auto n =
-      equals == std::string::npos ? std::nullopt : numbers<1>(text.substr(equals + 1), ' ');
-  if (!n || equals == 0 || !((*n)[0] >= 0.0))
-    throw Error("--set " + text + ": is not NAME=FACTOR with a factor of at least 0");
-  return {text.substr(0, equals), (*n)[0]};
-}
-
 std::vector<double> parse_wavelengths(const std::string& text) {
   constexpr double kMost = 10000.0;
   std::vector<double> list;
@@ -94,15 +60,6 @@ std::vector<double> parse_wavelengths(const std::string& text) {
     throw Error("--wavelengths " + text +
                 ": is neither FIRST:LAST:STEP nor a list A,B,C of wavelengths above 0 in nm");
   return list;
-}
-
-std::array<int, 2> parse_size(const std::string& text) {
-  const auto n = numbers<2>(text, 'x');
-  const auto fits = [](double v) { return v >= 1.0 && v <= 65536.0 && v == std::floor(v); };
-  if (!n || !fits((*n)[0]) || !fits((*n)[1])) {
-    throw Error("--size " + text + ": is not WIDTHxHEIGHT in pixels, 1 to 65536 each");
-  }
-  return {static_cast<int>((*n)[0]), static_cast<int>((*n)[1])};
 }
 
 std::array<double, 4> parse_crop(const std::string& text) {
@@ -137,15 +94,6 @@ SensorGrid parse_grid(const std::vector<std::string>& words) {
   if (!(area > 1e-9 * std::hypot(a, b, c) * std::hypot(d, e, f)))
     fail("the edges span no parallelogram");
   return grid;
-}
-
-std::optional<double> parse_exposure(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  const auto n = numbers<1>(text, ' ');
-  if (!n || !(std::abs((*n)[0]) <= 60.0)) {
-    throw Error("--exposure " + text + ": is neither auto nor an exposure value (-60 to 60)");
-  }
-  return (*n)[0];
 }
 
 }  // namespace atrium::app

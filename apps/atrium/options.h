@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/effort.h"
 #include "scene/camera.h"
 #include "scene/light_groups.h"
 #include "trace/render.h"
@@ -30,19 +31,8 @@ struct SceneOptions {
   std::string spectrum = "auto";
 };
 
-enum class Quality { Draft, Normal, High };
 enum class SolverChoice { Rows, Shooting, Matrix };
 enum class IndirectChoice { Auto, Mesh, Gather };
-
-/// Effort that a quality stands for.
-struct Effort {
-  int samples;               ///< of a pixel
-  trace::Indirect indirect;  ///< what IndirectChoice::Auto means
-  std::uint32_t max_elements;
-  int row_rays, gather_rays, direct_samples;
-  std::uint64_t caustic_photons;
-};
-[[nodiscard]] Effort effort_of(Quality quality);
 
 /// A picture that a solution is made for.
 struct PictureView {

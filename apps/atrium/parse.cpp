@@ -559,7 +559,8 @@ Command finished_command(Parser& p, const std::string& command_line) {
   }
   if (name == "reweight") {
     ReweightCommand o = p.reweight;
-    for (const std::string& text : p.reweight_factors) o.factors.push_back(parse_factor(text));
+    for (const std::string& text : p.reweight_factors)
+      o.factors.push_back(parse_factor("--set", text));
     return o;
   }
   if (name == "measure") {
@@ -577,18 +578,6 @@ Command finished_command(Parser& p, const std::string& command_line) {
 }
 
 }  // namespace
-
-Effort effort_of(Quality quality) {
-  switch (quality) {
-    case Quality::Draft:
-      return {16, trace::Indirect::Mesh, 15000, 32, 32, 8, 200000};
-    case Quality::Normal:
-      return {64, trace::Indirect::Gather, 60000, 64, 128, 16, 1000000};
-    case Quality::High:
-      break;
-  }
-  return {256, trace::Indirect::Gather, 150000, 128, 512, 32, 4000000};
-}
 
 Command parse_command_line(int argc, char** argv) {
   Parser p;

@@ -71,6 +71,24 @@ std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work, Counters
 }
 
 template <int N>
+Spectrum<N> ambient_irradiance(const Problem<N>& problem, const Solution<N>& solution,
+                               const SideValues<N>& unshot) {
+  Spectrum<N> left, absorbed_share;
+  for (const SideIndex i : problem.sides.active) {
+    if (total_plain(solution, i).is_zero()) continue;
+    const float a = problem.area(i);
+    left += unshot[i] * a;
+    absorbed_share +=
+        (Spectrum<N>::one() - problem.sides.reflectance[i] - problem.sides.transmittance[i ^ 1U]) *
+        a;
+  }
+  Spectrum<N> ambient;
+  for (int lane = 0; lane < N; ++lane)
+    ambient[lane] = absorbed_share[lane] > 0.0f ? left[lane] / absorbed_share[lane] : 0.0f;
+  return ambient;
+}
+
+template <int N>
 void require_diffuse(const Problem<N>& problem, const char* solver) {
   if (problem.specular)
     throw Error(std::string("radiosity: solver '") + solver +
@@ -82,6 +100,8 @@ void require_diffuse(const Problem<N>& problem, const char* solver) {
   template FluxBalance flux_balance(const Problem<N>&, const Solution<N>&, const Photons<N>&, \
                                     const Rows<N>&);                                          \
   template std::vector<Beyond> beyond_sides(const Problem<N>&, Work&, Counters&);             \
+  template Spectrum<N> ambient_irradiance(const Problem<N>&, const Solution<N>&,              \
+                                          const SideValues<N>&);                              \
   template void require_diffuse(const Problem<N>&, const char*);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -32,7 +32,7 @@ class ShootingSolver {
                            result_.direct.irradiance.plain[i ^ 1U]);
     work_.begin("shooting", 0.95);
     shoot_all();
-    add_ambient();
+    add_ambient(result_);
     balance();
     return std::move(result_);
   }
@@ -72,6 +72,8 @@ class ShootingSolver {
       result_.iteration.residual = initial > 0.0 ? left / initial : 0.0;
       result_.iteration.converged = result_.iteration.residual <= problem_.options.tolerance;
       if (result_.iteration.converged || work_.stopped()) break;
+      // Ever more seldom: a picture costs as much as many shots.
+      if ((shots_ & (shots_ - 1)) == 0) show();
       shoot(brightest);
       if (shots_ % 64 == 0) work_.report(1.0 - result_.iteration.residual);
     }
@@ -142,24 +144,17 @@ class ShootingSolver {
   }
 
   /// What was not shot, spread over the sides that light reached, with its further bounces.
-  void add_ambient() {
-    double area = 0.0;
-    Spectrum<N> left, absorbed_share;
-    for (const SideIndex i : problem_.sides.active) {
-      if (total_plain(result_, i).is_zero()) continue;
-      const float a = problem_.area(i);
-      area += static_cast<double>(a);
-      left += unshot_[i] * a;
-      absorbed_share += (Spectrum<N>::one() - problem_.sides.reflectance[i] -
-                         problem_.sides.transmittance[i ^ 1U]) *
-                        a;
-    }
-    if (!(area > 0.0)) return;
-    Spectrum<N> ambient;
-    for (int lane = 0; lane < N; ++lane)
-      ambient[lane] = absorbed_share[lane] > 0.0f ? left[lane] / absorbed_share[lane] : 0.0f;
+  void add_ambient(Solution<N>& solution) const {
+    const Spectrum<N> ambient = ambient_irradiance(problem_, solution, unshot_);
     for (const SideIndex i : problem_.sides.active)
-      if (!total_plain(result_, i).is_zero()) result_.indirect.irradiance.plain[i] += ambient;
+      if (!total_plain(solution, i).is_zero()) solution.indirect.irradiance.plain[i] += ambient;
+  }
+
+  void show() const {
+    if (!problem_.options.watch) return;
+    Solution<N> now = result_;
+    add_ambient(now);
+    hand_out(problem_, std::move(now));
   }
 
   /// Flux that was shot and that no side received was counted shot by shot.

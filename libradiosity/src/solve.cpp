@@ -111,6 +111,18 @@ void store(const Solution<N>& s, const Problem<N>& problem, SurfaceField& field)
         std::sqrt(s.direct.variance[i] + s.caustic.variance[i] + s.indirect.variance[i]);
 }
 
+/// The solution as everybody but the solvers has it.
+template <int N>
+void fill(Solution<N>& solution, const Problem<N>& problem, SurfaceField& field,
+          std::vector<scene::GroupField>& groups) {
+  complete(solution, problem);
+  field = problem.elements.layout;
+  store(solution, problem, field);
+  groups = group_fields(solution, problem);
+  const scene::RadianceUnit unit = problem.shading.scene().unit;
+  field.unit = unit == scene::RadianceUnit::Nit ? "lx" : "W/m^2";
+}
+
 /// The mesh that the solver works on. Only rows gain by elements of several sizes.
 template <int N>
 AdaptedMesh make_mesh(const scene::Shading<N>& shading, const Surroundings& surroundings,
@@ -236,10 +248,7 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   } else if (previous != nullptr && start.same_light && options.keep != Keep::Nothing) {
     result.state = previous->state;  // stopped before it had caught up
   }
-  complete(solution, problem);
-  result.field = result.elements.layout;
-  store(solution, problem, result.field);
-  result.groups = group_fields(solution, problem);
+  fill(solution, problem, result.field, result.groups);
   result.flux = solution.flux;
   result.residual = solution.iteration.residual;
   result.iterations = solution.iteration.iterations;
@@ -263,6 +272,22 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
 
 }  // namespace
 
+template <int N>
+void hand_out(const Problem<N>& problem, Solution<N> solution) {
+  if (!problem.options.watch) return;
+  SurfaceField field;
+  std::vector<scene::GroupField> groups;
+  fill(solution, problem, field, groups);
+  problem.options.watch({problem.elements, field, groups, solution.error_estimate});
+}
+
+#define ATRIUM_INSTANTIATE(N) template void hand_out(const Problem<N>&, Solution<N>);
+ATRIUM_INSTANTIATE(1)
+ATRIUM_INSTANTIATE(3)
+ATRIUM_INSTANTIATE(4)
+ATRIUM_INSTANTIATE(8)
+#undef ATRIUM_INSTANTIATE
+
 namespace {
 
 SolveResult solve_from(const scene::RayQuery& query, const material::SpectralBasis& basis,
@@ -277,7 +302,6 @@ SolveResult solve_from(const scene::RayQuery& query, const material::SpectralBas
   with_lanes(basis.lanes(), [&](auto lanes) {
     solve_lanes<lanes()>(query, basis, options, previous, work, result);
   });
-  result.field.unit = query.scene().unit == scene::RadianceUnit::Nit ? "lx" : "W/m^2";
   control.report("radiosity", 1.0, result.stopped_by);
   return result;
 }

@@ -117,9 +117,11 @@ class RowSolver {
       if (sight_of_lights_.empty())
         sight_of_lights_ = radiosity::sight_of_lights(problem_, regions_, counters_);
       draw_direct(problem_.sides.active, by_error() ? kPilot : problem_.options.direct_samples);
+      show_direct();
       work_.begin(problem_.specular ? "caustics" : "flux balance", problem_.specular ? 0.3 : 0.17);
       photons_ = trace_photons(problem_, work_, counters_);
       (void)paused(Stage::Light);
+      if (problem_.specular) show_direct();
     }
     if (stage_ <= Stage::Rows) build_rows();
     work_.begin("gathering", 0.98);
@@ -134,7 +136,8 @@ class RowSolver {
     keep();
     result_.state = std::move(state_);
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
-    hand_over_groups();
+    for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
+      result_.groups.push_back(part_of(groups_[g], std::move(group_variances_[g])));
     return std::move(result_);
   }
 
@@ -397,6 +400,7 @@ class RowSolver {
                     importance_));
     solve_bounces();
     (void)paused(Stage::Rows);
+    show_bounces(Bounces::Rows);
     if (first == all) {
       guide_rays();
       return;
@@ -419,6 +423,7 @@ class RowSolver {
     solve_bounces();
     guide_rays();
     (void)paused(Stage::Rows);
+    show_bounces(Bounces::Rows);
   }
 
   /// From now on rays go where the rows and the best field so far say that light comes from.
@@ -649,6 +654,64 @@ class RowSolver {
     }
     estimate_error(found);
     found_ = found;
+    if (!problem_.options.watch) return;
+    Solution<N> now = result_;
+    for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
+      now.groups.push_back(part_of(groups_[g], group_variances_[g]));
+    hand_out(problem_, std::move(now));
+  }
+
+  /// For who watches: light straight from the lights, the rest by and large.
+  void show_direct() {
+    if (!problem_.options.watch) return;
+    photons_.caustic.resize(groups_.size(),
+                            Estimate<N>(problem_.side_count(), problem_.sides.any_coupled));
+    take_direct();
+    show_bounces(Bounces::Ambient);
+  }
+
+  enum class Bounces { Ambient, Rows };
+
+  /// For who watches, before anything was gathered: what the lights' samples say, and what follows
+  /// by the rows or, before there are any, by and large.
+  void show_bounces(Bounces known) {
+    if (!problem_.options.watch) return;
+    Solution<N> now = result_;
+    const auto add = [&](const Irradiance<N>& part, Estimate<N>& into) {
+      for (const SideIndex i : problem_.sides.active) {
+        into.irradiance.plain[i] += part.plain[i];
+        if (problem_.sides.any_coupled) into.irradiance.body[i] += part.body[i];
+      }
+    };
+    for (const GroupLight<N>& g : groups_) {
+      add(g.direct, now.direct);
+      add(g.caustic, now.caustic);
+    }
+    const Solution<N> lit = now;
+    for (const GroupLight<N>& g : groups_) {
+      GroupEstimate<N> e{g.direct, g.caustic, bounces(g, known, lit),
+                         std::vector<float>(problem_.side_count()),
+                         std::vector<float>(problem_.side_count())};
+      add(e.indirect, now.indirect);
+      if (groups_.size() > 1) now.groups.push_back(std::move(e));
+    }
+    hand_out(problem_, std::move(now));
+  }
+
+  Irradiance<N> bounces(const GroupLight<N>& g, Bounces known, const Solution<N>& lit) const {
+    SideValues<N> unshot(problem_.side_count());
+    for (const SideIndex i : problem_.sides.active)
+      unshot[i] = leaving(problem_.sides, i, g.source[i], g.source[i ^ 1U]);
+    const Spectrum<N> ambient = ambient_irradiance(problem_, lit, unshot);
+    Irradiance<N> result(problem_.side_count(), problem_.sides.any_coupled);
+    for (const SideIndex i : problem_.sides.active) {
+      if (known == Bounces::Rows)
+        result.plain[i] = g.seen[i];
+      else if (!total_plain(lit, i).is_zero())
+        result.plain[i] = ambient;
+    }
+    if (problem_.sides.any_coupled) result.body = result.plain;
+    return result;
   }
 
   [[nodiscard]] std::vector<double> indirect_variances(std::size_t group) const {
@@ -778,6 +841,13 @@ class RowSolver {
     std::vector<float> direct, caustic, indirect;  ///< by side
     std::vector<float> rest;  ///< what is in these beside the side's own samples
   };
+
+  /// A group's part, for whoever dims the lights later.
+  GroupEstimate<N> part_of(const GroupLight<N>& g, Variances v) const {
+    for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
+    return {smoothed(g.direct), smoothed(g.caustic), smoothed(g.indirect), std::move(v.direct),
+            std::move(v.indirect)};
+  }
 
   /// Variances of the means of one group, or of the sum of all.
   [[nodiscard]] Variances variances(GroupChoice group) const {
@@ -915,18 +985,6 @@ class RowSolver {
     if (!importance_.empty())
       for (const SideIndex i : problem_.sides.active) share[i] *= importance_[i];
     return share;
-  }
-
-  /// Every group's part, for whoever dims the lights later.
-  void hand_over_groups() {
-    if (groups_.size() < 2) return;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      Variances& v = group_variances_[g];
-      for (std::size_t i = 0; i < v.direct.size(); ++i) v.direct[i] += v.caustic[i];
-      result_.groups.push_back({smoothed(groups_[g].direct), smoothed(groups_[g].caustic),
-                                smoothed(groups_[g].indirect), std::move(v.direct),
-                                std::move(v.indirect)});
-    }
   }
 
   [[nodiscard]] float caustic_variance(SideIndex i, GroupChoice group) const {

@@ -33,6 +33,18 @@ struct Solution {
         valid(problem.sides.is_active) {}
 };
 
+/// Gives what is known to SolveOptions::watch, if somebody watches. Elements that a solution knows
+/// nothing of count as not valid.
+template <int N>
+void hand_out(const Problem<N>& problem, Solution<N> solution);
+
+/// Irradiance that light still on its way makes of all lit sides, with its further bounces, if it
+/// spreads evenly [Cohen et al. 1988].
+/// \param unshot  radiosity that has not been sent, by side.
+template <int N>
+[[nodiscard]] Spectrum<N> ambient_irradiance(const Problem<N>& problem, const Solution<N>& solution,
+                                             const SideValues<N>& unshot);
+
 /// What is known before.
 struct Start {
   scene::ArchiveReader* state = nullptr;  ///< Solution::state of the same elements

@@ -37,11 +37,11 @@ Certificate certificate_of(const Solved& s, const SolveResult& r, double target,
                  {.error = target, .seed = seed, .probes = probes});
 }
 
-constexpr SolveOptions kCheap{.max_level = 0,
-                              .row_rays = 16,
-                              .gather_rays = 16,
-                              .direct_samples = 16,
-                              .caustic_photons = 1000};
+const SolveOptions kCheap{.max_level = 0,
+                          .row_rays = 16,
+                          .gather_rays = 16,
+                          .direct_samples = 16,
+                          .caustic_photons = 1000};
 
 SolveOptions cheap(double element_size) {
   SolveOptions o = kCheap;

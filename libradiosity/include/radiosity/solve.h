@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,15 @@ struct View {
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1: the part that is wanted
 };
 
+/// What a solve knows so far, complete: light that is still on its way is spread as ambient light
+/// over what is lit.
+struct Snapshot {
+  const Elements& elements;
+  const scene::SurfaceField& field;
+  const std::vector<scene::GroupField>& groups;  ///< as SolveResult::groups
+  double error_estimate = 0.0;  ///< as SolveResult::error_estimate; 0: not known yet
+};
+
 struct SolveOptions {
   Solver solver = Solver::Rows;
   double element_size = 0.0;           ///< [m] edge of an element; 0: from max_elements
@@ -68,6 +78,10 @@ struct SolveOptions {
   scene::Grouping light_groups = scene::Grouping::One;  ///< more than one: solver Rows only
   bool paper_weights = false;  ///< scene::Weights::Paper: for pictures in paper mode
   int probes = 0;              ///< points of the Certificate; 0: none is made
+  /// Called by the thread that solves, after direct light, caustics, rows and every round of
+  /// samples, or now and then while patches are shot; what it is given lives for the call. Changes
+  /// no bit of the result.
+  std::function<void(const Snapshot&)> watch = {};
 };
 
 /// Flux [lanes' unit * m^2], lane means; emitted = absorbed + escaped + in_medium within their

@@ -371,42 +371,4 @@ TEST_F(AtriumRun, AMissingModuleIsAClearFailure) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
 }
 
-#ifdef ATRIUM_VIEW_PROGRAM
-Result view(const TempFolder& folder, const std::string& arguments) {
-  return run_command(folder,
-                     "unset DISPLAY; " + std::string(ATRIUM_VIEW_PROGRAM) + " " + arguments);
-}
-
-TEST_F(AtriumRun, ViewerRefusesWithoutADisplayAndNamesBadInput) {
-  ASSERT_EQ(run(folder, "solve a.obj -o a.vtp --quality draft --quiet").code, 0);
-  const Result r = view(folder, "a.vtp --screenshot a.png");
-  EXPECT_EQ(r.code, 1);
-  EXPECT_NE(r.err.find("DISPLAY"), std::string::npos) << r.err;
-  EXPECT_EQ(view(folder, "missing.vtp").code, 2);
-  EXPECT_EQ(view(folder, "a.obj").code, 2);
-  EXPECT_EQ(view(folder, "").code, 2);
-  const Result field = view(folder, "a.vtp --field nonsense");
-  EXPECT_EQ(field.code, 2);
-  EXPECT_NE(field.err.find("irradiance"), std::string::npos) << field.err;
-}
-
-TEST_F(AtriumRun, ViewerTakesAScreenshot) {
-  if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "xvfb-run is missing";
-  ASSERT_EQ(run(folder, "solve a.obj -o a.vtu --quality draft --quiet").code, 0);
-  const Result r = run_command(folder, std::string("xvfb-run -a ") + ATRIUM_VIEW_PROGRAM +
-                                           " a.vtu --field irradiance --screenshot a.png --size "
-                                           "320x240");
-  EXPECT_EQ(r.code, 0) << r.err;
-  // The floor must be there: pixels left of the scale that are no grey background.
-  const auto image = atrium::scene::read_image(folder / "a.png");
-  int coloured = 0;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width * 3 / 4; ++x) {
-      coloured += std::abs(image.at(x, y, 2) - image.at(x, y, 0)) > 0.02f ? 1 : 0;
-    }
-  }
-  EXPECT_GT(coloured, image.width * image.height / 20);
-}
-#endif
-
 }  // namespace
