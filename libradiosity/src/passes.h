@@ -45,10 +45,10 @@ template <int N>
 struct Photons {
   std::vector<Estimate<N>> caustic;  ///< by light group
   std::uint64_t count = 0;
-  double escaped = 0.0;    ///< flux that left the scene before any diffuse surface
-  double absorbed = 0.0;   ///< flux lost at or in specular things before that
-  double in_medium = 0.0;  ///< flux that the air took before that
-  double variance = 0.0;   ///< of escaped + absorbed + in_medium
+  LaneValues<N> escaped{};    ///< flux that left the scene before any diffuse surface
+  LaneValues<N> absorbed{};   ///< flux lost at or in specular things before that
+  LaneValues<N> in_medium{};  ///< flux that the air took before that
+  double variance = 0.0;      ///< of the lane mean of escaped + absorbed + in_medium
 };
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,

@@ -246,8 +246,8 @@ class RowSolver {
       a(e.irradiance.body);
       a(e.variance);
     }
-    for (auto* v : {&photons_.escaped, &photons_.absorbed, &photons_.in_medium, &photons_.variance})
-      a(*v);
+    for (auto* v : {&photons_.escaped, &photons_.absorbed, &photons_.in_medium}) a(*v);
+    a(photons_.variance);
     a(photons_.count);
     for (GroupLight<N>& g : groups_) {
       for (auto* v : {&g.source, &g.bounced, &g.seen, &g.read, &g.solved_source, &g.solved_shot})

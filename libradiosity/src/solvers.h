@@ -89,16 +89,26 @@ template <int N>
                                        const Photons<N>& photons, const Rows<N>& rows);
 
 /// Where the light of a side goes that no side receives, as shares of it.
+template <int N>
 struct Beyond {
-  double escaped = 1.0;
-  double absorbed = 0.0;  ///< by surfaces without elements: black ones, and inner faces of bodies
-  double in_medium = 0.0;
+  LaneValues<N> escaped = filled<N>(1.0);
+  LaneValues<N> absorbed{};  ///< by surfaces without elements: black ones, inner faces of bodies
+  LaneValues<N> in_medium{};
+
+  /// Adds a flux by lane to what it becomes, lane means.
+  void divide(const LaneValues<N>& flux, FluxBalance& balance) const {
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      balance.escaped += flux[lane] * escaped[lane] / N;
+      balance.absorbed += flux[lane] * absorbed[lane] / N;
+      balance.in_medium += flux[lane] * in_medium[lane] / N;
+    }
+  }
 };
 /// For solvers that know from factors how much that is; what becomes of it is asked of hemisphere
 /// rays. By active side.
 template <int N>
-[[nodiscard]] std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work,
-                                               scene::Counters& counters);
+[[nodiscard]] std::vector<Beyond<N>> beyond_sides(const Problem<N>& problem, Work& work,
+                                                  scene::Counters& counters);
 
 /// \throws Error  naming the solver if something mirrors, refracts or glosses.
 template <int N>
