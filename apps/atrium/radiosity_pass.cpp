@@ -3,6 +3,7 @@
 #include "material/error.h"
 
 #ifdef ATRIUM_WITH_RADIOSITY
+#include "radiosity/coplanar.h"
 #include "radiosity/solve.h"
 #endif
 
@@ -104,6 +105,10 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
 
 bool radiosity_available() { return true; }
 
+std::optional<double> coplanar_share(const scene::Scene& scene) {
+  return radiosity::coplanar_share(scene);
+}
+
 RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                            const SolveSettings& settings, double time_limit, bool want_mesh,
                            const scene::Solution* previous) {
@@ -136,6 +141,8 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
 #else
 
 bool radiosity_available() { return false; }
+
+std::optional<double> coplanar_share(const scene::Scene&) { return std::nullopt; }
 
 RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double, bool,
                            const scene::Solution*) {
