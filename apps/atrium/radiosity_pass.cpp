@@ -86,6 +86,7 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.residual = r.residual;
   s.error_estimate = r.error_estimate;
   s.mesh_error = r.mesh_error;
+  s.mesh_error_target = r.mesh_target;
   s.complete = r.complete;
   s.stopped_by = r.stopped_by;
   s.emitted = r.flux.emitted;

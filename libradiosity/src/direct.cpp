@@ -1,5 +1,5 @@
 #include "hemisphere.h"
-#include "passes.h"
+#include "light_places.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -11,8 +11,11 @@ using scene::Counters;
 template <int N>
 class SideLight {
  public:
-  SideLight(const Problem<N>& problem, Purpose purpose, DirectLights which)
+  SideLight(const Problem<N>& problem, Purpose purpose, DirectLights which,
+            const scene::LightSampler<N>& lights)
       : problem_(problem),
+        lights_(lights),
+        own_(&lights == &problem.shading.lights()),
         purpose_(static_cast<std::uint64_t>(purpose)),
         which_(which),
         first_surface_(static_cast<std::uint32_t>(problem.shading.scene().lights.size())),
@@ -28,31 +31,65 @@ class SideLight {
     const float choice = sampler.next_1d();
     const Vec2f u = sampler.next_2d();
     if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return false;
-    const auto s = problem_.shading.lights().sample(p.position, normal, choice, u);
-    if (!s || !(s->pdf > 0.0f)) return true;
-    const bool is_surface = s->source >= first_surface_ && s->source < sky_;
-    if (which_ == DirectLights::NoSurfaces && is_surface) return true;
-    const float cosine = s->wi.dot(normal);
-    if (!(cosine > 0.0f) || s->radiance.is_zero()) return true;
-    const Spectrum<N> visible = problem_.shading.visibility(p, *s, counters, Counter::RaysDirect);
-    if ((visible * s->radiance).is_zero()) return true;
-    const bool coupled = problem_.sides.coupled[i / 2] != 0;
-    const Spectrum<N> body = coupled ? problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
-                                     : Spectrum<N>::one();
-    const auto add = [&](std::uint32_t source, const Spectrum<N>& radiance) {
-      const Spectrum<N> irradiance = visible * radiance * (cosine / s->pdf);
-      if (!irradiance.is_zero())
-        sums.add(problem_.group_of(source), replicate, irradiance, irradiance * body);
-    };
-    if (s->source == sky_ && problem_.group_count() > 1)
-      problem_.shading.lights().sky_parts(*s, add);
-    else
-      add(s->source, s->radiance);
+    arriving(i, p, normal, choice, u, Counter::RaysDirect, counters,
+             [&](std::size_t group, const Spectrum<N>& irradiance, const Spectrum<N>& body) {
+               sums.add(group, replicate, irradiance, irradiance * body);
+             });
     return true;
   }
 
+  /// A place with its light, see sample_places().
+  LightPlace place(SideIndex i, std::uint32_t index, std::size_t samples, Counters& counters,
+                   bool mixed) const {
+    scene::Sampler sampler(problem_.options.seed ^ (purpose_ << 32) ^ 0x91aceU, problem_.stream(i),
+                           index);
+    const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
+    const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
+    LightPlace result;
+    if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return result;
+    result.object = p.object;
+    result.triangle = p.triangle;
+    result.position = p.position;
+    result.valid = true;
+    for (std::size_t k = 0; k < samples; ++k) {
+      const float choice = sampler.next_1d();
+      arriving(i, p, normal, choice, sampler.next_2d(), Counter::RaysProbe, counters,
+               [&](std::size_t, const Spectrum<N>& irradiance, const Spectrum<N>&) {
+                 result.light[k] += irradiance.mean();
+               });
+    }
+    return result;
+  }
+
  private:
+  /// One sample: add(group, irradiance, body weight) for every part of its light that arrives.
+  template <class Add>
+  void arriving(SideIndex i, const scene::SurfacePoint& p, const Vec3f& normal, float choice,
+                const Vec2f& u, Counter kind, Counters& counters, Add&& add) const {
+    const auto s = lights_.sample(p.position, normal, choice, u);
+    if (!s || !(s->pdf > 0.0f)) return;
+    const bool is_surface = s->source >= first_surface_ && s->source < sky_;
+    if (which_ == DirectLights::NoSurfaces && is_surface) return;
+    const float cosine = s->wi.dot(normal);
+    if (!(cosine > 0.0f) || s->radiance.is_zero()) return;
+    const Spectrum<N> visible = problem_.shading.visibility(p, *s, counters, kind);
+    if ((visible * s->radiance).is_zero()) return;
+    const bool coupled = problem_.sides.coupled[i / 2] != 0;
+    const Spectrum<N> body = coupled ? problem_.shading.interact(p, normal).bsdf.body_weight(cosine)
+                                     : Spectrum<N>::one();
+    const auto add_part = [&](std::uint32_t source, const Spectrum<N>& radiance) {
+      const Spectrum<N> irradiance = visible * radiance * (cosine / s->pdf);
+      if (!irradiance.is_zero()) add(own_ ? problem_.group_of(source) : 0U, irradiance, body);
+    };
+    if (own_ && s->source == sky_ && problem_.group_count() > 1)
+      lights_.sky_parts(*s, add_part);
+    else
+      add_part(s->source, s->radiance);
+  }
+
   const Problem<N>& problem_;
+  const scene::LightSampler<N>& lights_;
+  bool own_;  ///< are they the scene's?
   std::uint64_t purpose_;
   DirectLights which_;
   std::uint32_t first_surface_, sky_;  ///< sources that are surfaces; the environment
@@ -65,12 +102,57 @@ bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights whic
                    const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, Counters& counters) {
   if (problem.shading.lights().empty()) return true;
-  const SideLight<N> light(problem, purpose, which);
+  const SideLight<N> light(problem, purpose, which, problem.shading.lights());
   return draw_one_by_one(
       plan, tally, work, counters,
       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums, Counters& c) {
         return light.measure(i, replicate, index, sums, c, !mixed.empty() && mixed[i] != 0);
       });
+}
+
+template <int N>
+bool sample_lights(const Problem<N>& problem, const scene::LightSampler<N>& lights,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work, Counters& counters) {
+  const SideLight<N> light(problem, Purpose::Compare, DirectLights::All, lights);
+  return draw_one_by_one(
+      plan, tally, work, counters,
+      [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums, Counters& c) {
+        return light.measure(i, replicate, index, sums, c, false);
+      });
+}
+
+template <int N>
+std::vector<LightPlace> sample_places(const Problem<N>& problem, Purpose purpose,
+                                      const std::vector<std::uint8_t>& mixed,
+                                      const std::vector<SideIndex>& sides, std::size_t samples,
+                                      Work& work, Counters& counters) {
+  constexpr std::size_t kGrain = 64;
+  std::vector<LightPlace> places(sides.size() * kLightPlaces, LightPlace());
+  const SideLight<N> light(problem, purpose, DirectLights::All, problem.shading.lights());
+  work.run(sides.size(), kGrain, counters, [&](std::size_t begin, std::size_t end, Counters& c) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::uint32_t n = 0; n < kLightPlaces; ++n)
+        places[k * kLightPlaces + n] =
+            light.place(sides[k], n, samples, c, !mixed.empty() && mixed[sides[k]] != 0);
+  });
+  return places;
+}
+
+template <int N>
+HalfFields halves_of(const Problem<N>& problem, const Tally<N>& tally) {
+  HalfFields halves{std::vector<float>(problem.side_count(), 0.0f),
+                    std::vector<float>(problem.side_count(), 0.0f)};
+  for (const SideIndex i : problem.sides.active)
+    for (std::size_t g = 0; g < tally.groups(); ++g) {
+      halves.first[i] += tally.half_mean(i, g, false);
+      halves.second[i] += tally.half_mean(i, g, true);
+    }
+  for (SideIndex i = 0; i < problem.side_count(); ++i)
+    if (const SideIndex cover = problem.sides.cover[i]; cover != kNoSide) {
+      halves.first[i] = halves.first[cover];
+      halves.second[i] = halves.second[cover];
+    }
+  return halves;
 }
 
 template <int N>
@@ -95,11 +177,17 @@ Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights wh
   return estimate_of(tally, problem);
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                             \
-  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                   \
-                              const std::vector<std::uint8_t>&, const std::vector<Draw>&, \
-                              Tally<N>&, Work&, Counters&);                               \
-  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                   \
+#define ATRIUM_INSTANTIATE(N)                                                                      \
+  template bool sample_direct(const Problem<N>&, Purpose, DirectLights,                            \
+                              const std::vector<std::uint8_t>&, const std::vector<Draw>&,          \
+                              Tally<N>&, Work&, Counters&);                                        \
+  template bool sample_lights(const Problem<N>&, const scene::LightSampler<N>&,                    \
+                              const std::vector<Draw>&, Tally<N>&, Work&, Counters&);              \
+  template std::vector<LightPlace> sample_places(                                                  \
+      const Problem<N>&, Purpose, const std::vector<std::uint8_t>&, const std::vector<SideIndex>&, \
+      std::size_t, Work&, Counters&);                                                              \
+  template HalfFields halves_of(const Problem<N>&, const Tally<N>&);                               \
+  template Estimate<N> estimate_of(const Tally<N>&, const Problem<N>&);                            \
   template Estimate<N> direct_light(const Problem<N>&, int, DirectLights, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

@@ -25,7 +25,11 @@ template <int N>
 /// What samples are for. Those that decide (what is divided, which patches are hot) are never those
 /// that count: what was found bright by chance would be measured again and what was found dark
 /// would not, and the mean would be too dark.
-enum class Purpose : std::uint64_t { Decide = 0x9d17ec7U, Count = 0xd17ec7U };
+enum class Purpose : std::uint64_t {
+  Decide = 0x9d17ec7U,
+  Count = 0xd17ec7U,
+  Compare = 0xc0417a4eU  ///< of other lights with these
+};
 
 /// Light that arrives straight or through panes: draws the samples of `plan` into the tally.
 /// \param which  lights that take part. \param mixed  by side: may a part of it lie inside a closed
@@ -35,6 +39,11 @@ template <int N>
 bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
                    const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                    Tally<N>& tally, Work& work, scene::Counters& counters);
+/// The same of lights that the scene may not have, all in the first group.
+template <int N>
+bool sample_lights(const Problem<N>& problem, const scene::LightSampler<N>& lights,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
+                   scene::Counters& counters);
 /// The same for solvers that need one estimate of all groups, `samples` for every active side.
 template <int N>
 [[nodiscard]] Estimate<N> direct_light(const Problem<N>& problem, int samples, DirectLights which,

@@ -85,6 +85,30 @@ class Tally {
     for (std::size_t r = 0; r < kReplicates; ++r)
       replicate_[at][r] += static_cast<float>(valid_[i][r]) * plain.mean();
   }
+  /// Adds to every sample of a replicate what the same replicate of another tally has on average;
+  /// its spread then has the errors of both. \param sign  of what is added.
+  void shift(SideIndex i, std::size_t group, const Tally& by, float sign) {
+    const std::size_t at = group * sides_ + i;
+    const float n = sign * static_cast<float>(valid(i));
+    plain_[at] += n * by.mean(i, group);
+    if (!body_.empty()) body_[at] += n * by.mean_body(i, group);
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      if (by.valid_[i][r] > 0)
+        replicate_[at][r] += sign * static_cast<float>(valid_[i][r]) * by.replicate_[at][r] /
+                             static_cast<float>(by.valid_[i][r]);
+  }
+  /// Mean square (lane mean) of the difference between two tallies' replicates.
+  [[nodiscard]] static double mean_square(SideIndex i, std::size_t group, const Tally& a,
+                                          const Tally& b) {
+    const std::size_t at = group * a.sides_ + i;
+    double sum = 0.0;
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      const double d = static_cast<double>(a.replicate_[at][r]) / std::max(1U, a.valid_[i][r]) -
+                       static_cast<double>(b.replicate_[at][r]) / std::max(1U, b.valid_[i][r]);
+      sum += d * d / kReplicates;
+    }
+    return sum;
+  }
   /// Starts a side again, from the first sample on.
   void forget(SideIndex i) {
     drawn_[i] = 0;
@@ -111,6 +135,17 @@ class Tally {
   }
   [[nodiscard]] Spectrum<N> mean_body(SideIndex i, std::size_t group) const {
     return per_sample(body_[group * sides_ + i], i);
+  }
+  /// Mean (lane mean) of half of the replicates; 0 without samples.
+  [[nodiscard]] float half_mean(SideIndex i, std::size_t group, bool second) const {
+    float sum = 0.0f;
+    std::uint32_t n = 0;
+    for (std::size_t r = second ? kReplicates / 2 : 0; r < (second ? kReplicates : kReplicates / 2);
+         ++r) {
+      sum += replicate_[group * sides_ + i][r];
+      n += valid_[i][r];
+    }
+    return n > 0 ? sum / static_cast<float>(n) : 0.0f;
   }
   /// Variance of one group's mean (lane mean); 0 without two replicates.
   [[nodiscard]] double variance(SideIndex i, std::size_t group) const {
