@@ -72,7 +72,7 @@ class RowSolver {
   void restore(const Start& start) {
     archive(*start.state);
     const SideParents parents(start.parent, problem_.side_count());
-    if (!consistent(parents.old_sides())) start.state->damaged();
+    if (!consistent(parents.old_sides(), start.changed.light())) start.state->damaged();
     if (start.changed.light()) {
       relight(parents, start);
       return;
@@ -308,7 +308,8 @@ class RowSolver {
   }
 
   /// Can what was read be of n sides? Indices are used without checks later.
-  [[nodiscard]] bool consistent(std::size_t n) const {
+  /// \param other_lights  then other sides may be active, and smoothings are made anew.
+  [[nodiscard]] bool consistent(std::size_t n, bool other_lights) const {
     const auto active =
         static_cast<std::size_t>(std::count(active_before_.begin(), active_before_.end(), 1));
     bool ok = stage_ <= Stage::RoundGather && active_before_.size() == n && is_for(direct_, n) &&
@@ -327,8 +328,7 @@ class RowSolver {
     for (const GroupLight<N>& g : groups_) {
       for (const auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot})
         ok = ok && v->size() == n;
-      ok = ok && (g.smoothing || n != problem_.side_count()) &&
-           (g.read.empty() || g.read.size() == n);
+      ok = ok && (g.smoothing || other_lights) && (g.read.empty() || g.read.size() == n);
     }
     return ok && (rows_.rays.empty() || rows_.is_for(n, active));
   }

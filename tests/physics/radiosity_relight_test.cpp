@@ -197,6 +197,28 @@ TEST(Relight, HotPatchesAreChosenAgain) {
   expect_relights(four_rooms(lamps({1.5, 1.5, 2.6})), four_rooms(after), options(0.03), 0.9);
 }
 
+// A lamp in a closed box lights its inside; outside, that has no light any more, and the room has.
+TEST(Relight, ALampThatComesOutOfABox) {
+  const auto room = [](const Vec3d& lamp) {
+    SceneMaker maker;
+    const auto white = maker.material(test::diffuse(0.5));
+    maker.room({0, 0, 0}, {4, 3, 3}, white);
+    maker.sphere(white, 0.9f, 2, false);
+    scene::Scene s = maker.take();
+    for (Vec3f& p : s.meshes.back().positions) p += Vec3f(2, 1.5f, 1.2f);
+    s.lights = {point(lamp, 5.0), point({0.5, 0.5, 2.5}, 1.0)};
+    return s;
+  };
+  const Bench was(room({2, 1.5, 1.2})), is(room({3.3, 2.2, 2.4}));
+  const SolveResult rest = [&] {
+    const SolveResult old = was.run(options());
+    return is.run(options(), &old);
+  }();
+  SolveOptions o = options();
+  o.seed = 5;
+  EXPECT_NEAR(compare(rest, is.run(o)).flux, 0.0, 0.01);
+}
+
 // The lamp comes close to a wall: elements there are divided further, and their error is stated.
 TEST(Relight, ElementsAreDividedWhereTheLightIsNow) {
   SolveOptions o = options(0.0, 3);
