@@ -411,6 +411,8 @@ class RowSolver {
     work_.begin("gathering", 0.6);
     draw_gather(top_up(problem_, gathered_, lit_sides(),
                        by_error() ? kPilot : problem_.options.gather_rays / 4));
+    std::erase_if(gather_again_, [&](const Goal& g) { return !is_lit(g.side); });
+    draw_gather(missing(std::exchange(gather_again_, {}), gathered_));
     assemble();
     // What samples that stayed have read was refined; the rows' noise must not come back with them.
     refine_field();
@@ -467,6 +469,7 @@ class RowSolver {
     std::vector<std::uint8_t> mixed(problem_.side_count(), 0);
     std::vector<float> exposed(problem_.side_count(), 1.0f);
     draw_again_.clear();
+    gather_again_.clear();
     const auto all = static_cast<std::uint32_t>(std::max(1, problem_.options.row_rays));
     for (const SideIndex i : problem_.sides.active) {
       const SideIndex was = parents.of(i);
@@ -480,6 +483,7 @@ class RowSolver {
                                      kReplicates - 1) /
           kReplicates;
       draw_again_.push_back({i, std::max(drawn, least)});
+      if (known && by_error()) gather_again_.push_back({i, gathered_.drawn(was)});
       if (known && parents.whole(i)) {
         gathered.copy(i, gathered_, was);
         if (with_direct && mixed_[was] == 0) direct.copy(i, direct_, was);
@@ -1089,7 +1093,8 @@ class RowSolver {
 
   /// The last round knows nothing of what smooths, so its own mean C tells the error of the
   /// smoothed mean: the square of their difference is that of the systematic error (with what
-  /// earlier rounds left) and the variance that C has in it.
+  /// earlier rounds left) and the variance that C has in it. With a small last round C is noisy;
+  /// the error is no less than what the noise of all rounds leaves after smoothing.
   void state_smoothed_error(const SideValues<N>& found, const Variances& v) {
     const auto fresh = static_cast<double>(fresh_share_);
     const std::array<std::pair<const Tally<N>*, double>, 3> parts{
@@ -1106,6 +1111,7 @@ class RowSolver {
       difference[i] = static_cast<double>(total_plain(result_, i).mean()) - last;
     }
     double sampled = 0.0;
+    double least = 0.0;
     double systematic = 0.0;
     for (const SideIndex i : problem_.sides.active)
       systematic += weights_[i] * difference[i] * difference[i];
@@ -1115,8 +1121,10 @@ class RowSolver {
       const double share = part * tally->last_share();
       sampled += weighted(result_smoothing_->variance(own, share, 0.0));
       systematic -= weighted(result_smoothing_->variance(own, share, -part));
+      for (const SideIndex i : problem_.sides.active) own[i] = tally->variance(i);
+      least += weighted(result_smoothing_->variance(own, part, 0.0));
     }
-    result_.error_estimate = std::sqrt(sampled + std::max(0.0, systematic) + weighted(v.rest));
+    result_.error_estimate = std::sqrt(std::max(least, sampled + systematic) + weighted(v.rest));
   }
 
   /// From the irradiance so far.
@@ -1385,6 +1393,7 @@ class RowSolver {
   std::vector<std::uint8_t> active_before_;   ///< its active sides
   std::vector<Spectrum<N>> hot_sums_before_;  ///< its Rows::hot
   std::vector<Goal> draw_again_;              ///< its samples of lights
+  std::vector<Goal> gather_again_;            ///< and of hemispheres, if an error is asked for
   BroughtSamples<N> brought_;
   bool caught_up_ = true;  ///< false: stopped before those were traced again
   std::vector<char> state_;
