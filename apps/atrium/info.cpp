@@ -5,6 +5,7 @@
 #include "common/json.h"
 #include "material/bsdf.h"
 #include "material/error.h"
+#include "radiosity_pass.h"
 #include "scene/image_io.h"
 #include "scene/luminaire.h"
 #include "scene/mesh_io.h"
@@ -299,6 +300,8 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   }
   r.list("cameras", cameras);
   add_load_report(scene.report, r);
+  if (const auto share = coplanar_share(scene); share && (r.json() || *share > 0.0))
+    r.add("area under another surface in its plane", *share);
   if (r.json()) {
     add_features(r.writer, loaded.features);
   } else {

@@ -3,6 +3,7 @@
 #include "material/error.h"
 
 #ifdef ATRIUM_WITH_RADIOSITY
+#include "radiosity/coplanar.h"
 #include "radiosity/solve.h"
 #endif
 
@@ -85,6 +86,7 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
   s.residual = r.residual;
   s.error_estimate = r.error_estimate;
   s.mesh_error = r.mesh_error;
+  s.mesh_error_target = r.mesh_target;
   s.complete = r.complete;
   s.stopped_by = r.stopped_by;
   s.emitted = r.flux.emitted;
@@ -103,6 +105,10 @@ SolveSummary summarise(const radiosity::SolveResult& r) {
 }  // namespace
 
 bool radiosity_available() { return true; }
+
+std::optional<double> coplanar_share(const scene::Scene& scene) {
+  return radiosity::coplanar_share(scene);
+}
 
 RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
                            const SolveSettings& settings, double time_limit,
@@ -132,6 +138,8 @@ RadiosityRun run_radiosity(Session& session, const LoadedScene& loaded,
 #else
 
 bool radiosity_available() { return false; }
+
+std::optional<double> coplanar_share(const scene::Scene&) { return std::nullopt; }
 
 RadiosityRun run_radiosity(Session&, const LoadedScene&, const SolveSettings&, double,
                            const scene::Solution*) {

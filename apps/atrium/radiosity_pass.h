@@ -20,6 +20,9 @@ struct RadiosityRun {
 /// false: this build has no radiosity library (ATRIUM_WITH_OPENMESH was off).
 [[nodiscard]] bool radiosity_available();
 
+/// radiosity::coplanar_share(); nothing if not available.
+[[nodiscard]] std::optional<double> coplanar_share(const scene::Scene& scene);
+
 /// Does light reach a diffuse surface at all? If not the reason is said in `why`.
 [[nodiscard]] bool radiosity_needed(const scene::Features& features, std::string& why);
 

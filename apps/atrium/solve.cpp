@@ -61,6 +61,11 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
     session.progress.warning("the error of " + std::to_string(100.0 * c.solve.error) +
                              " % was not reached: stopped by " + run.summary.stopped_by + " at " +
                              std::to_string(100.0 * run.summary.error_estimate) + " %");
+  if (previous && run.summary.mesh_error > 1.1 * run.summary.mesh_error_target)
+    session.progress.warning("the elements of " + c.solution +
+                             " are too coarse for this light: their error is " +
+                             std::to_string(100.0 * run.summary.mesh_error) + " %, not " +
+                             std::to_string(100.0 * run.summary.mesh_error_target) + " %");
   if (run.summary.certificate) session.progress.note(describe(*run.summary.certificate));
 
   session.clock.enter("write");

@@ -33,7 +33,7 @@ struct SolveSummary {
   int views = 0;                       ///< that the effort followed; 0: every surface matters
   std::optional<double> error_target;  ///< that was asked for
   double error_estimate = 0.0;
-  double mesh_error = 0.0;
+  double mesh_error = 0.0, mesh_error_target = 0.0;
   std::optional<ProbeSummary> certificate;
   bool complete = true;
   std::string stopped_by;

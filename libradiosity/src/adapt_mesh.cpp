@@ -4,6 +4,8 @@
 #include <memory>
 #include <numeric>
 
+#include "mesh_error.h"
+
 namespace atrium::radiosity {
 namespace {
 
@@ -11,29 +13,6 @@ using scene::SurfaceField;
 
 constexpr int kPilot = 16;  ///< light samples per side while elements are being divided
 constexpr std::uint64_t kSeed = 0x3e5bU;  // samples of its own, see adapt_mesh()
-
-Vec3f centre_of(const Elements& elements, std::uint32_t e) {
-  Vec3d sum = Vec3d::Zero();
-  double area = 0.0;
-  for (std::uint32_t p = elements.first_piece[e]; p < elements.first_piece[e + 1]; ++p) {
-    const ElementPiece piece = elements.pieces[p];
-    for (std::size_t k = 1; k + 1 < piece.corners.size(); ++k) {
-      const Vec3f& a = piece.corners[0];
-      const Vec3f& b = piece.corners[k];
-      const Vec3f& c = piece.corners[k + 1];
-      const double w = static_cast<double>((b - a).cross(c - a).norm());
-      sum += w / 3.0 * (a + b + c).template cast<double>();
-      area += w;
-    }
-  }
-  return area > 0.0 ? Vec3f((sum / area).cast<float>())
-                    : elements.pieces[elements.first_piece[e]].corners[0];
-}
-
-double asked_mesh_error(const SolveOptions& o) {
-  if (o.mesh_error > 0.0) return o.mesh_error;
-  return o.error > 0.0 ? 0.7 * o.error : 0.03;
-}
 
 /// Direct irradiance (lane mean) of every side, and the variance of each value.
 struct Light {
@@ -75,44 +54,6 @@ double ambient(const Problem<N>& problem, const Light& light) {
   return area > 0.0 ? flux / area * rho / (1.0 - rho) : 0.0;
 }
 
-/// How far a bilinear interpolation over the elements round side i is off: an eighth of the second
-/// difference across it; beside an edge of the facet, where the value goes on constant, a quarter
-/// of the first one. Squared; what noise explains is taken off.
-double squared_miss(const std::vector<EdgeNeighbours>& neighbours, const Light& light,
-                    SideIndex i) {
-  const auto mean_at = [&](int edge, double& value, double& variance) {
-    double count = 0.0;
-    value = variance = 0.0;
-    for (int k = 0; k < 2; ++k) {
-      const std::uint32_t n = neighbours[i / 2][static_cast<std::size_t>(2 * edge + k)];
-      if (n == scene::SurfaceField::kNone) continue;
-      const SideIndex j = side_index(n, side_of(i));
-      if (light.known[j] == 0) continue;
-      value += static_cast<double>(light.value[j]);
-      variance += static_cast<double>(light.variance[j]);
-      count += 1.0;
-    }
-    if (count > 0.0) value /= count, variance /= count * count;
-    return count > 0.0;
-  };
-  const double own = static_cast<double>(light.value[i]);
-  const double noise = static_cast<double>(light.variance[i]);
-  double miss = 0.0;
-  for (const int axis : {0, 1}) {
-    double a = 0.0;
-    double b = 0.0;
-    double va = 0.0;
-    double vb = 0.0;
-    const bool low = mean_at(2 * axis, a, va);
-    const bool high = mean_at(2 * axis + 1, b, vb);
-    if (low && high)
-      miss += (std::pow(a - 2.0 * own + b, 2) - va - 4.0 * noise - vb) / 64.0;
-    else if (low || high)
-      miss += (std::pow(low ? a - own : b - own, 2) - (low ? va : vb) - noise) / 16.0;
-  }
-  return std::max(0.0, miss);
-}
-
 template <int N>
 class MeshAdapter {
  public:
@@ -142,7 +83,8 @@ class MeshAdapter {
   void count_memory(std::uint64_t elements_beside, std::uint64_t samples_beside) {
     work_.memory().hold(MemoryBudget::Part::Elements,
                         bytes_of(mesh_.elements) + problem_->bytes() + elements_beside);
-    work_.memory().hold(MemoryBudget::Part::Samples, direct_.bytes() + samples_beside);
+    work_.memory().hold(MemoryBudget::Part::Samples,
+                        direct_.bytes() + bytes_of(places_) + samples_beside);
   }
 
   void measure_all() {
@@ -152,22 +94,73 @@ class MeshAdapter {
     sample_direct(*problem_, Purpose::Decide, DirectLights::All, {}, {},
                   top_up(*problem_, direct_, problem_->sides.active, kPilot), direct_, work_,
                   counters_);
+    places_.assign(problem_->side_count() * kLightPlaces, LightPlace());
+    look_at_places(*problem_, problem_->sides.active, places_);
     count_memory(0, 0);
+  }
+
+  void look_at_places(const Problem<N>& problem, const std::vector<SideIndex>& sides,
+                      std::vector<LightPlace>& places) {
+    const std::vector<LightPlace> found =
+        sample_places(problem, Purpose::Decide, {}, sides, 2, work_, counters_);
+    for (std::size_t k = 0; k < found.size(); ++k)
+      places[sides[k / kLightPlaces] * kLightPlaces + k % kLightPlaces] = found[k];
+  }
+
+  /// What interpolation misses at the places of a side, squared: mean, and how far that is certain.
+  struct Miss {
+    double mean = 0.0, certain = 0.0;
+  };
+  std::vector<Miss> misses(const SurfaceField& layout, const HalfFields& halves) const {
+    const std::vector<SideIndex>& active = problem_->sides.active;
+    std::vector<Miss> all(problem_->side_count());
+    scene::parallel_for(active.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) all[active[k]] = miss_of(layout, halves, active[k]);
+    });
+    return all;
+  }
+
+  Miss miss_of(const SurfaceField& layout, const HalfFields& halves, SideIndex i) const {
+    double sum = 0.0, squares = 0.0, n = 0.0;
+    for (std::size_t p = i * kLightPlaces; p < (i + 1) * kLightPlaces; ++p) {
+      const LightPlace& place = places_[p];
+      if (!place.valid) continue;
+      const auto stencil = layout.stencil(shading_.scene(), place.object, place.triangle,
+                                          place.position, side_of(i));
+      const auto at = [&](const std::vector<float>& field) {
+        return static_cast<double>(layout.interpolate<1>(field, stencil, side_of(i))[0]);
+      };
+      const double miss =
+          FieldAt{at(halves.first), at(halves.second)}.squared_miss(place.light[0], place.light[1]);
+      sum += miss;
+      squares += miss * miss;
+      n += 1.0;
+    }
+    if (n < 2.0) return {};
+    const double mean = sum / n;
+    return {mean, mean - std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
   }
 
   /// Marks the elements that have to be divided; empty if none.
   std::vector<std::uint8_t> choose() {
     const Light light = light_of(*problem_, direct_);
-    const std::vector<EdgeNeighbours> neighbours = edge_neighbours(mesh_.elements.layout);
-    const std::size_t count = mesh_.elements.layout.element_count();
+    SurfaceField layout = mesh_.elements.layout;
+    layout.valid = light.known;
+    const HalfFields halves = halves_of(*problem_, direct_);
+    const Bends bends(layout, light.known);
+    const std::size_t count = layout.element_count();
     std::vector<double> contribution(count, 0.0);
     const std::vector<double> weight = weights(light);
-    double total = 0.0;
+    const std::vector<Miss> miss = misses(layout, halves);
+    MeshMiss sum;
     for (const SideIndex i : problem_->sides.active) {
-      const double c = calibration_ * weight[i] * squared_miss(neighbours, light, i);
-      contribution[i / 2] += c;
-      total += c;
+      const double bend = weight[i] * bends.squared_miss(halves, i);
+      sum.between += bend;
+      sum.within += weight[i] * miss[i].mean;
+      sum.within_variance += std::pow(weight[i] * miss[i].mean, 2);
+      contribution[i / 2] += std::max({0.0, bend, weight[i] * miss[i].certain});
     }
+    double total = sum.squared();
     mesh_.error = std::sqrt(total);
     const double target = std::pow(asked_mesh_error(options_), 2);
     if (total <= target) return {};
@@ -215,66 +208,43 @@ class MeshAdapter {
   }
 
   void divide(const std::vector<std::uint8_t>& split) {
-    const Light before = light_of(*problem_, direct_);
     Elements old = std::move(mesh_.elements);
     Refined refined = refine(shading_.scene(), old, split);
     mesh_.elements = std::move(refined.elements);
+    remember_parents(refined.parent);
     auto next = std::make_unique<Problem<N>>(shading_, surroundings_, mesh_.elements, options_);
     Tally<N> tally(next->side_count(), next->group_count(), next->sides.any_coupled);
-    std::vector<SideIndex> fresh, unknown;  // of parts; of wholes that no cover counts any more
+    std::vector<LightPlace> places(next->side_count() * kLightPlaces, LightPlace());
+    std::vector<SideIndex> fresh;  // parts, and wholes that no cover counts any more
     for (const SideIndex i : next->sides.active) {
       const std::uint32_t parent = refined.parent[i / 2];
       if (mesh_.elements.layout.element_level[i / 2] == old.layout.element_level[parent]) {
         const SideIndex same = side_index(parent, side_of(i));
-        if (problem_->sides.is_active[same] != 0)
+        if (problem_->sides.is_active[same] != 0) {
           tally.copy(i, direct_, same);
-        else
-          unknown.push_back(i);
-        continue;
+          std::copy_n(places_.begin() + same * kLightPlaces, kLightPlaces,
+                      places.begin() + i * kLightPlaces);
+          continue;
+        }
       }
       fresh.push_back(i);
     }
-    for (const auto& sides : {fresh, unknown})
-      sample_direct(*next, Purpose::Decide, DirectLights::All, {}, {},
-                    top_up(*next, tally, sides, kPilot), tally, work_, counters_);
-    old.layout.valid = before.known;
+    sample_direct(*next, Purpose::Decide, DirectLights::All, {}, {},
+                  top_up(*next, tally, fresh, kPilot), tally, work_, counters_);
+    look_at_places(*next, fresh, places);
     const std::uint64_t old_elements = bytes_of(old) + problem_->bytes();
-    const std::uint64_t old_samples = direct_.bytes();
+    const std::uint64_t old_samples = direct_.bytes() + bytes_of(places_);
     problem_ = std::move(next);
     direct_ = std::move(tally);
+    places_ = std::move(places);
     count_memory(old_elements, old_samples);
     count_memory(bytes_of(old), 0);
-    calibrate(old, before, fresh, refined.parent);
   }
 
-  /// Parts against what the level of the whole said there: that ratio of measured to expected
-  /// squared miss holds for the elements that were not divided.
-  void calibrate(const Elements& old, const Light& before, const std::vector<SideIndex>& fresh,
-                 const std::vector<std::uint32_t>& parent) {
-    const Light light = light_of(*problem_, direct_);
-    const std::vector<double> weight = weights(light);
-    const std::vector<EdgeNeighbours> neighbours = edge_neighbours(old.layout);
-    double measured = 0.0;
-    double expected = 0.0;
-    for (const SideIndex i : fresh) {
-      const ElementPiece piece = mesh_.elements.pieces[mesh_.elements.first_piece[i / 2]];
-      const auto stencil = old.layout.stencil(shading_.scene(), piece.object, piece.triangle,
-                                              centre_of(mesh_.elements, i / 2), side_of(i));
-      if (stencil.count == 0) continue;
-      double value = 0.0;
-      double variance = static_cast<double>(light.variance[i]);
-      for (int k = 0; k < stencil.count; ++k) {
-        const SideIndex j = side_index(stencil.element[k], side_of(i));
-        const double w = static_cast<double>(stencil.weight[k]);
-        value += w * static_cast<double>(before.value[j]);
-        variance += w * w * static_cast<double>(before.variance[j]);
-      }
-      const double miss = std::pow(static_cast<double>(light.value[i]) - value, 2) - variance;
-      measured += weight[i] * miss;
-      expected +=
-          weight[i] * squared_miss(neighbours, before, side_index(parent[i / 2], side_of(i)));
-    }
-    if (expected > 0.0) calibration_ = std::clamp(measured / expected, 0.1, 10.0);
+  void remember_parents(std::vector<std::uint32_t> parent) {
+    if (!mesh_.parent.empty())
+      for (std::uint32_t& p : parent) p = mesh_.parent[p];
+    mesh_.parent = std::move(parent);
   }
 
   const scene::Shading<N>& shading_;
@@ -284,11 +254,16 @@ class MeshAdapter {
   scene::Counters& counters_;
   AdaptedMesh mesh_;
   Tally<N> direct_;
+  std::vector<LightPlace> places_;  ///< kLightPlaces of every side
   std::unique_ptr<Problem<N>> problem_;
-  double calibration_ = 1.0;
 };
 
 }  // namespace
+
+double asked_mesh_error(const SolveOptions& o) {
+  if (o.mesh_error > 0.0) return o.mesh_error;
+  return o.error > 0.0 ? 0.7 * o.error : 0.03;
+}
 
 template <int N>
 AdaptedMesh adapt_mesh(const scene::Shading<N>& shading, const Surroundings& surroundings,

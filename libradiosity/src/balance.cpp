@@ -6,15 +6,28 @@ namespace {
 
 using scene::Counters;
 
-/// Summed weight of a row, lane mean.
+/// Lane by lane: where the air or a gas is coloured, what is bright and what is absorbed there go
+/// together, and means of both say nothing about their product.
 template <int N>
-double row_sum(const Rows<N>& rows, std::size_t k) {
-  double sum = 0.0;
+LaneValues<N> lanes_of(const Spectrum<N>& s) {
+  LaneValues<N> lanes;
+  for (int lane = 0; lane < N; ++lane)
+    lanes[static_cast<std::size_t>(lane)] = static_cast<double>(s[lane]);
+  return lanes;
+}
+
+/// Summed weight of a row.
+template <int N>
+LaneValues<N> row_sum(const Rows<N>& rows, std::size_t k) {
+  LaneValues<N> sum{};
   for (std::uint64_t e = rows.first[k]; e < rows.first[k + 1]; ++e) {
     const auto& entry = rows.entries[e];
     const bool chromatic = (entry.target & Rows<N>::kChromatic) != 0;
-    sum += static_cast<double>(entry.weight) *
-           (chromatic ? static_cast<double>(rows.spectral[entry.spectral].mean()) : 1.0);
+    for (std::size_t lane = 0; lane < N; ++lane)
+      sum[lane] +=
+          static_cast<double>(entry.weight) *
+          (chromatic ? static_cast<double>(rows.spectral[entry.spectral][static_cast<int>(lane)])
+                     : 1.0);
   }
   return sum;
 }
@@ -25,9 +38,9 @@ template <int N>
 FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const Photons<N>& photons,
                          const Rows<N>& rows) {
   FluxBalance f{.emitted = static_cast<double>(problem.shading.lights().flux().mean()),
-                .absorbed = photons.absorbed,
-                .escaped = photons.escaped,
-                .in_medium = photons.in_medium};
+                .absorbed = lane_mean(photons.absorbed),
+                .escaped = lane_mean(photons.escaped),
+                .in_medium = lane_mean(photons.in_medium)};
   double variance = photons.variance;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (rows.rays[k] == 0) continue;
@@ -35,15 +48,18 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
     const double rays = rows.rays[k];
     const double exposed = rays / (rays + rows.dropped[k]);
     const double area = static_cast<double>(problem.area(i)) * exposed;
-    const double b = static_cast<double>(
-        leaving(problem.sides, i, total_exchange(problem, s, i), total_exchange(problem, s, i ^ 1U))
-            .mean());
-    const double escaped = static_cast<double>(rows.escaped[k]) / rays;
-    const double in_medium = static_cast<double>(rows.in_medium[k]) / rays;
-    f.escaped += area * b * escaped;
-    f.in_medium += area * b * in_medium;
-    f.absorbed += area * (absorbed_per_area(problem, s, i) +
-                          b * (1.0 - row_sum(rows, k) / rays - escaped - in_medium));
+    const LaneValues<N> b = lanes_of(leaving(problem.sides, i, total_exchange(problem, s, i),
+                                             total_exchange(problem, s, i ^ 1U)));
+    const LaneValues<N> escaped = lanes_of(rows.escaped[k]);
+    const LaneValues<N> in_medium = lanes_of(rows.in_medium[k]);
+    const LaneValues<N> found = row_sum(rows, k);
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      const double per_ray = area * b[lane] / (N * rays);
+      f.escaped += per_ray * escaped[lane];
+      f.in_medium += per_ray * in_medium[lane];
+      f.absorbed += per_ray * (rays - found[lane] - escaped[lane] - in_medium[lane]);
+    }
+    f.absorbed += area * absorbed_per_area(problem, s, i);
     variance +=
         area * area *
         static_cast<double>(s.direct.variance[i] + s.caustic.variance[i] + s.indirect.variance[i]);
@@ -53,19 +69,26 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
 }
 
 template <int N>
-std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work, Counters& counters) {
+std::vector<Beyond<N>> beyond_sides(const Problem<N>& problem, Work& work, Counters& counters) {
   constexpr int kRays = 256;
   const std::size_t n = problem.sides.active.size();
   const Rows<N> rows =
       trace_rows<N>(problem, {}, {}, std::vector<std::uint8_t>(n, 1), 0, kRays, work, counters);
-  std::vector<Beyond> all(n);
+  std::vector<Beyond<N>> all(n);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double escaped = static_cast<double>(rows.escaped[k]);
-    const double in_medium = static_cast<double>(rows.in_medium[k]);
-    double absorbed = rows.rays[k] - row_sum(rows, k) - escaped - in_medium;
-    if (!(absorbed > 0.5)) absorbed = 0.0;  // of rounding: less than one ray
-    const double sum = escaped + in_medium + absorbed;
-    if (sum > 0.0) all[k] = {escaped / sum, absorbed / sum, in_medium / sum};
+    const LaneValues<N> escaped = lanes_of(rows.escaped[k]);
+    const LaneValues<N> in_medium = lanes_of(rows.in_medium[k]);
+    const LaneValues<N> found = row_sum(rows, k);
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      double absorbed = rows.rays[k] - found[lane] - escaped[lane] - in_medium[lane];
+      if (!(absorbed > 0.5)) absorbed = 0.0;  // of rounding: less than one ray
+      const double sum = escaped[lane] + in_medium[lane] + absorbed;
+      if (sum > 0.0) {
+        all[k].escaped[lane] = escaped[lane] / sum;
+        all[k].absorbed[lane] = absorbed / sum;
+        all[k].in_medium[lane] = in_medium[lane] / sum;
+      }
+    }
   }
   return all;
 }
@@ -99,7 +122,7 @@ void require_diffuse(const Problem<N>& problem, const char* solver) {
 #define ATRIUM_INSTANTIATE(N)                                                                 \
   template FluxBalance flux_balance(const Problem<N>&, const Solution<N>&, const Photons<N>&, \
                                     const Rows<N>&);                                          \
-  template std::vector<Beyond> beyond_sides(const Problem<N>&, Work&, Counters&);             \
+  template std::vector<Beyond<N>> beyond_sides(const Problem<N>&, Work&, Counters&);          \
   template Spectrum<N> ambient_irradiance(const Problem<N>&, const Solution<N>&,              \
                                           const SideValues<N>&);                              \
   template void require_diffuse(const Problem<N>&, const char*);

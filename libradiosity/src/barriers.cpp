@@ -46,6 +46,24 @@ std::pair<double, double> inside(const Corners& c, const Vec3d& n, const Vec3d& 
 
 }  // namespace
 
+std::optional<Barrier> within_triangle(const std::array<Vec3f, 3>& triangle,
+                                       const Barrier& barrier) {
+  const Corners c = to_double(triangle);
+  const Vec3d n = unit_normal(c);
+  const Vec3d d = barrier.b - barrier.a;
+  double low = 0.0, high = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d inward = n.cross(c[(k + 1) % 3] - c[k]);
+    const double at = (barrier.a - c[k]).dot(inward);
+    const double slope = d.dot(inward);
+    if (slope == 0.0 && at < 0.0) return std::nullopt;
+    if (slope > 0.0) low = std::max(low, -at / slope);
+    if (slope < 0.0) high = std::min(high, -at / slope);
+  }
+  if (!(low < high)) return std::nullopt;
+  return Barrier{barrier.a + low * d, barrier.a + high * d, barrier.wall};
+}
+
 struct BarrierFinder::Impl {
   const scene::Scene& scene;
   TriangleTree triangles{scene, stops_light};

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "scene/scene.h"
@@ -12,7 +14,12 @@ namespace atrium::radiosity {
 /// it.
 struct Barrier {
   Vec3d a, b;
+  bool wall = true;  ///< false: nothing stands there, but elements end
 };
+
+/// The part of a barrier within a triangle in whose plane it lies, if it is more than a point.
+[[nodiscard]] std::optional<Barrier> within_triangle(const std::array<Vec3f, 3>& triangle,
+                                                     const Barrier& barrier);
 
 /// Finds where the surfaces of a scene that let no light pass straight meet its triangles.
 class BarrierFinder {

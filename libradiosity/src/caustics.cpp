@@ -19,7 +19,8 @@ struct Deposit {
 template <int N>
 struct Batch {
   std::vector<Deposit<N>> deposits;
-  double escaped = 0.0, in_medium = 0.0, absorbed = 0.0, squares = 0.0;
+  LaneValues<N> escaped{}, in_medium{}, absorbed{};
+  double squares = 0.0;
 };
 
 template <int N>
@@ -33,21 +34,25 @@ class PhotonTracer {
     const Vec2f position = sampler.next_2d();
     const auto e = problem_.shading.lights().sample_emission(choice, position, sampler.next_2d());
     if (!e) return;
-    double left = static_cast<double>(e->weight.mean());
+    Spectrum<N> left = e->weight;
     const PathEnd<N> end = follow<N>(
         problem_, {e->origin, e->direction}, e->weight, sampler, material::Transport::Flux,
         Counter::RaysPhoton, counters, [&](const Landing<N>& at, const Spectrum<N>& flux) {
-          left -= static_cast<double>(flux.mean());
+          left -= flux;
           if (at.specular)
             batch.deposits.push_back(
                 {at.side, problem_.group_of(e->source), flux, flux * at.body_weight()});
         });
-    const double escaped = static_cast<double>(end.escaped.mean());
-    batch.escaped += escaped;
-    const double in_medium = static_cast<double>(end.in_medium.mean());
-    batch.in_medium += in_medium;
-    batch.absorbed += left - escaped - in_medium;
-    batch.squares += left * left;
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      const int l = static_cast<int>(lane);
+      const double escaped = static_cast<double>(end.escaped[l]);
+      const double in_medium = static_cast<double>(end.in_medium[l]);
+      batch.escaped[lane] += escaped;
+      batch.in_medium[lane] += in_medium;
+      batch.absorbed[lane] += static_cast<double>(left[l]) - escaped - in_medium;
+    }
+    const double mean = static_cast<double>(left.mean());
+    batch.squares += mean * mean;
   }
 
  private:
@@ -125,15 +130,18 @@ Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& w
       problem.group_count(), std::vector<std::uint32_t>(problem.side_count(), 0));
   for (const Batch<N>& batch : batches) {
     add_deposits(problem, batch, n, arrived, result);
-    result.escaped += batch.escaped / n;
-    result.in_medium += batch.in_medium / n;
-    result.absorbed += batch.absorbed / n;
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      result.escaped[lane] += batch.escaped[lane] / n;
+      result.in_medium[lane] += batch.in_medium[lane] / n;
+      result.absorbed[lane] += batch.absorbed[lane] / n;
+    }
     squares += batch.squares / n;
   }
   if (problem.specular)
     for (std::size_t g = 0; g < result.caustic.size(); ++g)
       smooth_photons(problem, arrived[g], result.caustic[g]);
-  const double mean = result.escaped + result.in_medium + result.absorbed;
+  const double mean =
+      lane_mean(result.escaped) + lane_mean(result.in_medium) + lane_mean(result.absorbed);
   result.variance = std::max(0.0, squares - mean * mean) / n;
   return result;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "material/material.h"
 #include "triangle_tree.h"
@@ -47,6 +48,57 @@ std::optional<Covers::Cover> Covers::of(const scene::SurfacePoint& point) const 
     if (inside) best = Cover{item.object, item.triangle, cosine < 0.0};
   }
   return best;
+}
+
+namespace {
+
+using Edge = std::array<Vec3f, 2>;
+
+/// In an order of its own for both directions.
+std::array<float, 6> edge_key(const Edge& e) {
+  const std::array<float, 6> k{e[0].x(), e[0].y(), e[0].z(), e[1].x(), e[1].y(), e[1].z()};
+  const std::array<float, 6> turned{e[1].x(), e[1].y(), e[1].z(), e[0].x(), e[0].y(), e[0].z()};
+  return std::min(k, turned);
+}
+
+}  // namespace
+
+std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t triangle) const {
+  const scene::SurfacePoint point =
+      scene::surface_point(impl_->scene, object, triangle, 1.0f / 3, 1.0f / 3);
+  const auto corners = impl_->scene.corners(object, triangle);
+  std::array<Vec3d, 3> c;
+  Eigen::AlignedBox3f box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    c[k] = corners[k].cast<double>();
+    box.extend(corners[k]);
+  }
+  const double reach = 2.0 * static_cast<double>(point.error);
+  box.min().array() -= 2.0f * point.error;
+  box.max().array() += 2.0f * point.error;
+  const Vec3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+  if (!n.allFinite()) return {};
+  // Edges that two triangles of a cover share are no end of it.
+  std::map<std::pair<std::uint32_t, std::array<float, 6>>, int> uses;
+  for (const std::uint32_t i : impl_->triangles.meeting(box)) {
+    const TriangleTree::Item& item = impl_->triangles.item(i);
+    if (item.object.value >= object.value) continue;
+    const auto other = impl_->scene.corners(item.object, item.triangle);
+    const bool in_plane = std::all_of(other.begin(), other.end(), [&](const Vec3f& p) {
+      return std::abs((p.cast<double>() - c[0]).dot(n)) <= reach;
+    });
+    if (!in_plane) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      ++uses[{item.object.value, edge_key({other[k], other[(k + 1) % 3]})}];
+  }
+  std::vector<Barrier> outlines;
+  for (const auto& [key, count] : uses) {
+    if (count != 1) continue;
+    const auto& e = key.second;
+    const Barrier edge{Vec3d(e[0], e[1], e[2]), Vec3d(e[3], e[4], e[5]), false};
+    if (const auto part = within_triangle(corners, edge)) outlines.push_back(*part);
+  }
+  return outlines;
 }
 
 }  // namespace atrium::radiosity

@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "barriers.h"
 #include "scene/ray_query.h"
 
 namespace atrium::radiosity {
@@ -21,6 +23,10 @@ class Covers {
   };
   /// The surface of the lowest object below the point's own that lies on the point.
   [[nodiscard]] std::optional<Cover> of(const scene::SurfacePoint& point) const;
+  /// Where the surfaces that lie on a triangle end on it: cut along these, every part of it is
+  /// covered as a whole or not at all.
+  [[nodiscard]] std::vector<Barrier> outlines_on(scene::ObjectId object,
+                                                 std::uint32_t triangle) const;
 
  private:
   struct Impl;

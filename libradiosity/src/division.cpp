@@ -20,6 +20,9 @@ constexpr double kSmallestFacet = 1e-2;
 constexpr double kSmallestRegion = 1e-3;
 constexpr double kGap = 0.02;        // cells; narrower gaps between barriers connect nothing
 constexpr double kWallLength = 2.0;  // cells; longer barriers part what is beside their ends, too
+constexpr double kFreeLength = 0.5;  // cells; longer barriers that end free part what is near them
+constexpr std::size_t kMostFree = 64;   // of one facet; more stay as they are
+constexpr double kOutlineLength = 0.1;  // cells; shorter pieces of covers' outlines cut nothing
 constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
 
 /// A corner, and which line the edge to the next one lies on.
@@ -53,9 +56,14 @@ Barrier clipped(const Barrier& b, const Vec3d& point, const Vec3d& normal, doubl
 
 class Divider {
  public:
-  Divider(const BarrierFinder& finder, scene::ObjectId object, const Corners& corners,
-          const Facet& facet, double cell)
-      : finder_(finder), object_(object), corners_(corners), facet_(facet), cell_(cell) {
+  Divider(const BarrierFinder& finder, const Covers& covers, scene::ObjectId object,
+          const Corners& corners, const Facet& facet, double cell)
+      : finder_(finder),
+        covers_(covers),
+        object_(object),
+        corners_(corners),
+        facet_(facet),
+        cell_(cell) {
     double size = 0.0;
     for (const std::uint32_t t : facet.triangles)
       for (const Vec3f& c : corners[t])
@@ -69,6 +77,13 @@ class Divider {
     number_edges();
     cut_triangles();
     connect();
+    const std::vector<Wall> free = free_walls();
+    if (!free.empty() && free.size() <= kMostFree && is_flat()) {
+      fence_off(free);
+      number_edges();
+      cut_triangles();
+      connect();
+    }
     return collect();
   }
 
@@ -78,9 +93,97 @@ class Divider {
     for (const std::uint32_t t : facet_.triangles) {
       for (const Barrier& b : finder_.on(object_, t, 0.01 * cell_))
         if ((b.b - b.a).norm() > tolerance_) barriers_.push_back(b);
+      for (const Barrier& b : covers_.outlines_on(object_, t))
+        if ((b.b - b.a).norm() > kOutlineLength * cell_) barriers_.push_back(b);
       first_.push_back(barriers_.size());
       if (barriers_.size() > kMostBarriers) return;
     }
+  }
+
+  /// An edge of a fragment that lies on a line.
+  struct Use {
+    std::uint32_t fragment;
+    double low, high;  // along the line
+  };
+
+  // ---- walls that end free ----
+
+  /// Where barriers lie on a line.
+  struct Wall {
+    Vec3d a, b;
+  };
+
+  /// Long barriers with the same region on both of their sides.
+  std::vector<Wall> free_walls() {
+    std::vector<Wall> walls;
+    for (std::uint32_t line = 0; line < lines_.size(); ++line) {
+      if (uses_[line].size() < 2) continue;
+      for (const auto& [from, to] : covered(lines_[line], /*walls_only=*/true)) {
+        if (to - from < kFreeLength * cell_ || !joined_across(uses_[line], from, to)) continue;
+        const Wall w{lines_[line].point + from * lines_[line].direction,
+                     lines_[line].point + to * lines_[line].direction};
+        // A wall through several triangles has a line in each.
+        const bool known = std::any_of(walls.begin(), walls.end(), [&](const Wall& v) {
+          return (v.a + v.b - w.a - w.b).norm() < kGap * cell_;
+        });
+        if (!known) walls.push_back(w);
+      }
+    }
+    return walls;
+  }
+
+  bool joined_across(const std::vector<Use>& uses, double from, double to) {
+    for (std::size_t i = 0; i < uses.size(); ++i)
+      for (std::size_t j = i + 1; j < uses.size(); ++j) {
+        const double low = std::max({uses[i].low, uses[j].low, from});
+        const double high = std::min({uses[i].high, uses[j].high, to});
+        if (high - low > 4.0 * tolerance_ && root_of(uses[i].fragment) == root_of(uses[j].fragment))
+          return true;
+      }
+    return false;
+  }
+
+  bool is_flat() const {
+    const Vec3d origin = corners_[facet_.triangles[0]][0].cast<double>();
+    return std::all_of(facet_.triangles.begin(), facet_.triangles.end(), [&](std::uint32_t t) {
+      return std::all_of(corners_[t].begin(), corners_[t].end(), [&](const Vec3f& p) {
+        return std::abs((p.cast<double>() - origin).dot(facet_.normal)) <= 4.0 * tolerance_;
+      });
+    });
+  }
+
+  /// A strip of a cell's width round each of these walls becomes a region of its own, and the
+  /// wall's line parts it: no element near the wall lies on both of its sides.
+  void fence_off(const std::vector<Wall>& walls) {
+    std::vector<Barrier> fences;
+    for (const Wall& w : walls) {
+      const Vec3d along = cell_ * (w.b - w.a).normalized();
+      const Vec3d across = facet_.normal.cross(along);
+      const Vec3d a = w.a - along, b = w.b + along;
+      fences.push_back({a, b, false});
+      fences.push_back({a - across, b - across, false});
+      fences.push_back({a + across, b + across, false});
+      fences.push_back({a - across, a + across, false});
+      fences.push_back({b - across, b + across, false});
+    }
+    std::vector<Barrier> all;
+    std::vector<std::size_t> first{0};
+    for (std::size_t i = 0; i < facet_.triangles.size(); ++i) {
+      all.insert(all.end(), barriers_.begin() + static_cast<std::ptrdiff_t>(first_[i]),
+                 barriers_.begin() + static_cast<std::ptrdiff_t>(first_[i + 1]));
+      for (const Barrier& f : fences)
+        if (const auto part = within_triangle(corners_[facet_.triangles[i]], f);
+            part && (part->b - part->a).norm() > tolerance_)
+          all.push_back(*part);
+      first.push_back(all.size());
+    }
+    barriers_ = std::move(all);
+    first_ = std::move(first);
+    edge_line_.clear();
+    lines_.clear();
+    fragments_.clear();
+    nodes_.clear();
+    root_.clear();
   }
 
   using EdgeKey = std::array<float, 6>;
@@ -188,15 +291,11 @@ class Divider {
 
   // ---- which fragments hang together ----
 
-  struct Use {
-    std::uint32_t fragment;
-    double low, high;  // along the line
-  };
-
   void connect() {
     parent_.resize(fragments_.size());
     std::iota(parent_.begin(), parent_.end(), 0U);
-    std::vector<std::vector<Use>> uses(lines_.size());
+    std::vector<std::vector<Use>>& uses = uses_;
+    uses.assign(lines_.size(), {});
     for (std::uint32_t f = 0; f < fragments_.size(); ++f) {
       const auto& c = fragments_[f].corners;
       for (std::size_t k = 0; k < c.size(); ++k) {
@@ -211,12 +310,13 @@ class Divider {
 
   void connect_across(std::uint32_t line, const std::vector<Use>& uses) {
     if (uses.size() < 2) return;
-    const std::vector<Interval> closed = covered(lines_[line]);
+    const std::vector<Interval> closed = covered(lines_[line], false);
+    const std::vector<Interval> walls = covered(lines_[line], true);
     for (std::size_t i = 0; i < uses.size(); ++i)
       for (std::size_t j = i + 1; j < uses.size(); ++j) {
         const double low = std::max(uses[i].low, uses[j].low);
         const double high = std::min(uses[i].high, uses[j].high);
-        if (high - low > 4.0 * tolerance_ && is_open(low, high, closed))
+        if (high - low > 4.0 * tolerance_ && is_open(low, high, closed, walls))
           parent_[root_of(uses[i].fragment)] = root_of(uses[j].fragment);
       }
   }
@@ -224,12 +324,14 @@ class Divider {
   using Interval = std::pair<double, double>;
 
   /// Where barriers lie on a line, ascending; what all but touches is one.
-  std::vector<Interval> covered(const Line& line) const {
+  /// \param walls_only  not what is a border without a wall.
+  std::vector<Interval> covered(const Line& line, bool walls_only) const {
     std::vector<Interval> all;
     const auto off = [&](const Vec3d& p) {
       return (p - line.point - along(line, p) * line.direction).norm();
     };
     for (const Barrier& b : barriers_) {
+      if (walls_only && !b.wall) continue;
       if (off(b.a) > 4.0 * tolerance_ || off(b.b) > 4.0 * tolerance_) continue;
       all.push_back(std::minmax(along(line, b.a), along(line, b.b)));
     }
@@ -247,12 +349,15 @@ class Divider {
   /// Does a border between fragments connect them? Next to a wall's own line it does not, doorway
   /// or not: elements on both sides of the wall would be one. A short barrier (a table's leg) has
   /// to cover the border; one without any barrier is open however short it is.
-  bool is_open(double low, double high, const std::vector<Interval>& closed) const {
+  bool is_open(double low, double high, const std::vector<Interval>& closed,
+               const std::vector<Interval>& walls) const {
+    for (const auto& [from, to] : walls) {
+      const double length = to - from;
+      if (length > kWallLength * cell_ && from - high < length && low - to < length) return false;
+    }
     double at = low;
     double widest = 0.0;
     for (const auto& [from, to] : closed) {
-      const double length = to - from;
-      if (length > kWallLength * cell_ && from - high < length && low - to < length) return false;
       if (from < high) widest = std::max(widest, std::min(from, high) - at);
       if (from < high) at = std::max(at, to);
     }
@@ -319,6 +424,7 @@ class Divider {
   }
 
   const BarrierFinder& finder_;
+  const Covers& covers_;
   scene::ObjectId object_;
   const Corners& corners_;
   const Facet& facet_;
@@ -331,14 +437,15 @@ class Divider {
   std::vector<Fragment> fragments_;
   std::vector<SurfaceField::Cut> nodes_;
   std::vector<std::uint32_t> root_, parent_;
+  std::vector<std::vector<Use>> uses_;  // by line
 };
 
 }  // namespace
 
-Division divide_facet(const BarrierFinder& barriers, scene::ObjectId object, const Corners& corners,
-                      const Facet& facet, double cell) {
+Division divide_facet(const BarrierFinder& barriers, const Covers& covers, scene::ObjectId object,
+                      const Corners& corners, const Facet& facet, double cell) {
   if (facet.clump || facet.area < kSmallestFacet * cell * cell) return {};
-  return Divider(barriers, object, corners, facet, cell).divide();
+  return Divider(barriers, covers, object, corners, facet, cell).divide();
 }
 
 }  // namespace atrium::radiosity

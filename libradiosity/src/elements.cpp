@@ -104,9 +104,10 @@ class Builder {
     limit_facets();
     choose_final_size();
     const BarrierFinder barriers(scene_);
+    const Covers covers(scene_);
     scene::parallel_for(objects_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        divide(barriers, objects_[k]);
+        divide(barriers, covers, objects_[k]);
         cut(objects_[k]);
       }
     });
@@ -163,13 +164,13 @@ class Builder {
   }
 
   /// Regions of a facet that other surfaces part become facets of their own.
-  void divide(const BarrierFinder& barriers, std::size_t object) {
+  void divide(const BarrierFinder& barriers, const Covers& covers, std::size_t object) {
     ObjectPart& part = parts_[object];
     part.corners = object_corners(scene_, ObjectId(object));
     const Corners whole = part.corners;
     std::vector<Facet> facets;
     for (Facet& f : part.facets) {
-      Division d = divide_facet(barriers, ObjectId(object), whole, f, cell_);
+      Division d = divide_facet(barriers, covers, ObjectId(object), whole, f, cell_);
       if (d.empty()) {
         facets.push_back(std::move(f));
         continue;

@@ -41,22 +41,26 @@ FluxBalance emission_balance(const Problem<N>& problem, const std::vector<Emitte
                              const Photons<N>& photons) {
   if (emitters.empty() || !only_surfaces_emit(problem.shading.scene()))
     return {.emitted = static_cast<double>(problem.shading.lights().flux().mean()),
-            .absorbed = photons.absorbed,
-            .escaped = photons.escaped,
-            .in_medium = photons.in_medium,
+            .absorbed = lane_mean(photons.absorbed),
+            .escaped = lane_mean(photons.escaped),
+            .in_medium = lane_mean(photons.in_medium),
             .standard_error = std::sqrt(photons.variance)};
   FluxBalance f;
-  double beyond = 0.0;
+  LaneValues<N> beyond{};
   for (const Emitter<N>& e : emitters)
-    for (int lane = 0; lane < N; ++lane) {
-      const double exitance = static_cast<double>(e.exitance[lane]) / N;
-      f.emitted += exitance * e.patch.area;
-      beyond += exitance * (e.patch.area - e.received[static_cast<std::size_t>(lane)]);
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      const double exitance = static_cast<double>(e.exitance[static_cast<int>(lane)]);
+      f.emitted += exitance * e.patch.area / N;
+      beyond[lane] += exitance * (e.patch.area - e.received[lane]);
     }
-  const double lost = photons.escaped + photons.absorbed + photons.in_medium;
-  f.absorbed = lost > 0.0 ? beyond * photons.absorbed / lost : 0.0;
-  f.in_medium = lost > 0.0 ? beyond * photons.in_medium / lost : 0.0;
-  f.escaped = beyond - f.absorbed - f.in_medium;
+  for (std::size_t lane = 0; lane < N; ++lane) {
+    const double lost = photons.escaped[lane] + photons.absorbed[lane] + photons.in_medium[lane];
+    const double absorbed = lost > 0.0 ? beyond[lane] * photons.absorbed[lane] / lost : 0.0;
+    const double in_medium = lost > 0.0 ? beyond[lane] * photons.in_medium[lane] / lost : 0.0;
+    f.absorbed += absorbed / N;
+    f.in_medium += in_medium / N;
+    f.escaped += (beyond[lane] - absorbed - in_medium) / N;
+  }
   return f;
 }
 

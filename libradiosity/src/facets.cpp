@@ -9,6 +9,8 @@
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
+#include "scene/edge_parts.h"
+
 namespace atrium::radiosity {
 namespace {
 
@@ -112,6 +114,57 @@ Neighbours adjacency(const Corners& corners, const Geometry& geometry) {
   return result;
 }
 
+/// What lies across the open edges that meet others at T-junctions: by 3 * triangle + edge, the
+/// triangle across each of the edge's parts, or kNone.
+using PartNeighbours = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
+
+/// Only within a plane: there a T-junction is a matter of triangulation.
+PartNeighbours across_t_junctions(const Corners& corners, const Geometry& geometry,
+                                  const Neighbours& neighbours) {
+  constexpr double kFlat = 1.0 - 1e-6;
+  std::unordered_map<Bits3, std::uint32_t, HashBits3> welded;
+  std::vector<scene::OpenEdge> edges;
+  std::vector<std::uint32_t> slot;
+  for (std::uint32_t t = 0; t < corners.size(); ++t) {
+    if (geometry.area[t] == 0.0) continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (neighbours[t][k] != kNone) continue;
+      const Vec3f& a = corners[t][k];
+      const Vec3f& b = corners[t][(k + 1) % 3];
+      const auto id = [&](const Vec3f& p) {
+        return welded.try_emplace(bits(p), static_cast<std::uint32_t>(welded.size())).first->second;
+      };
+      const std::uint32_t from = id(a);
+      edges.push_back({a.cast<double>(), b.cast<double>(), from, id(b)});
+      slot.push_back(3 * t + k);
+    }
+  }
+  PartNeighbours result;
+  const auto parts = scene::divide_edges(edges);
+  if (!parts) return result;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> uses;
+  std::vector<std::uint32_t> count(edges.size(), 0);
+  for (std::uint32_t p = 0; p < parts->size(); ++p) {
+    uses[std::minmax((*parts)[p].id_a, (*parts)[p].id_b)].push_back(p);
+    ++count[(*parts)[p].edge];
+  }
+  for (const scene::EdgePart& p : *parts) {
+    const auto& both = uses[std::minmax(p.id_a, p.id_b)];
+    std::uint32_t other = kNone;
+    if (both.size() == 2) {
+      const scene::EdgePart& q =
+          (*parts)[both[0]].edge == p.edge ? (*parts)[both[1]] : (*parts)[both[0]];
+      const std::uint32_t across = slot[q.edge] / 3;
+      const bool divided = count[p.edge] > 1 || count[q.edge] > 1;
+      if (divided && q.id_a == p.id_b &&
+          geometry.normal[across].dot(geometry.normal[slot[p.edge] / 3]) > kFlat)
+        other = across;
+    }
+    result[slot[p.edge]].push_back(other);
+  }
+  return result;
+}
+
 class Grower {
  public:
   Grower(const Corners& corners, const FacetOptions& options)
@@ -119,6 +172,7 @@ class Grower {
         options_(options),
         geometry_(measure(corners)),
         neighbours_(adjacency(corners, geometry_)),
+        part_neighbours_(across_t_junctions(corners, geometry_, neighbours_)),
         facet_of_(corners.size(), kNone) {}
 
   std::vector<Facet> grow_all() {
@@ -158,11 +212,24 @@ class Grower {
     facet.triangles.push_back(seed);
     facet_of_[seed] = id;
     for (std::size_t next = 0; next < facet.triangles.size(); ++next)
-      for (const std::uint32_t t : neighbours_[facet.triangles[next]]) {
-        if (t == kNone || facet_of_[t] != kNone || !fits(facet, origin, t)) continue;
-        facet_of_[t] = id;
-        facet.triangles.push_back(t);
-      }
+      for (std::uint32_t k = 0; k < 3; ++k)
+        visit_across(facet.triangles[next], k, [&](std::uint32_t t) {
+          if (t == kNone || facet_of_[t] != kNone || !fits(facet, origin, t)) return;
+          facet_of_[t] = id;
+          facet.triangles.push_back(t);
+        });
+  }
+
+  /// f(triangle or kNone) for all that lies across an edge.
+  template <class F>
+  void visit_across(std::uint32_t t, std::uint32_t k, F&& f) const {
+    const auto it =
+        neighbours_[t][k] == kNone ? part_neighbours_.find(3 * t + k) : part_neighbours_.end();
+    if (it == part_neighbours_.end()) {
+      f(neighbours_[t][k]);
+      return;
+    }
+    for (const std::uint32_t other : it->second) f(other);
   }
 
   bool fits(const Facet& facet, const Vec3d& origin, std::uint32_t t) const {
@@ -184,9 +251,12 @@ class Grower {
       const auto& c = corners_[t];
       facet.area += geometry_.area[t];
       facet.centre += geometry_.area[t] * (c[0] + c[1] + c[2]).cast<double>() / 3.0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t other = neighbours_[t][k];
-        if (other != kNone && facet_of_[other] == id) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        bool inside = true;
+        visit_across(t, k, [&](std::uint32_t other) {
+          inside = inside && other != kNone && facet_of_[other] == id;
+        });
+        if (inside) continue;
         Vec3d edge = (c[(k + 1) % 3] - c[k]).cast<double>();
         edge -= edge.dot(facet.normal) * facet.normal;
         if (edge.squaredNorm() <= longest * (1.0 + 1e-6)) continue;
@@ -202,6 +272,7 @@ class Grower {
   FacetOptions options_;
   Geometry geometry_;
   Neighbours neighbours_;
+  PartNeighbours part_neighbours_;
   std::vector<std::uint32_t> facet_of_;
 };
 

@@ -27,8 +27,9 @@ struct FacetOptions {
 };
 
 /// Grows facets over the half-edge adjacency of the triangles (corners at exactly the same place
-/// are one vertex; where the surface is non-manifold it is cut open). Triangles without area or
-/// with corners that are not finite belong to none.
+/// are one vertex; where the surface is non-manifold it is cut open), and within a plane over
+/// T-junctions, where edges meet part by part. Triangles without area or with corners that are not
+/// finite belong to none.
 [[nodiscard]] std::vector<Facet> grow_facets(const Corners& corners, const FacetOptions& options);
 
 /// Merges facets smaller than cell^2 whose centres share a voxel of edge `voxel` and whose normals

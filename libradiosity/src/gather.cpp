@@ -12,8 +12,8 @@ template <int N>
 class Gatherer {
  public:
   Gatherer(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
-           const HotPatches<N>& hot, const HemisphereGuide& guide, std::uint32_t round)
-      : problem_(problem), field_(field), hot_(hot), guide_(guide), round_(round) {}
+           const HotPatches<N>& hot, const HemisphereGuide& guide, std::uint32_t sequence)
+      : problem_(problem), field_(field), hot_(hot), guide_(guide), sequence_(sequence) {}
 
   /// \return  how many of the rays started outside closed bodies.
   std::uint32_t sample(SideIndex i, int replicate, std::uint32_t first, std::uint32_t count,
@@ -23,7 +23,7 @@ class Gatherer {
     std::uint32_t valid = 0;
     for (std::uint32_t done = 0; done < count; done += kMost) {
       const HemisphereRays<N> rays(
-          problem_, i, replicate_seed(problem_.options.seed, 0x6a74e5U, replicate, round_),
+          problem_, i, replicate_seed(problem_.options.seed, 0x6a74e5U, replicate, sequence_),
           problem_.stream(i), first + done, static_cast<int>(std::min(kMost, count - done)),
           towards);
       rays.follow_all(
@@ -56,20 +56,20 @@ class Gatherer {
   const std::vector<SideValues<N>>& field_;
   const HotPatches<N>& hot_;
   const HemisphereGuide& guide_;
-  std::uint32_t round_;
+  std::uint32_t sequence_;
 };
 
 template <int N>
 class HotSampler {
  public:
   HotSampler(const Problem<N>& problem, const HotPatches<N>& hot, const SightTable& table,
-             std::uint32_t round)
-      : problem_(problem), hot_(hot), table_(table), round_(round) {}
+             std::uint32_t sequence)
+      : problem_(problem), hot_(hot), table_(table), sequence_(sequence) {}
 
   /// \return  false if the point lies inside a closed body; asked only where `mixed`.
   bool sample(SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums,
               Counters& counters, bool mixed) const {
-    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x407caU, replicate, round_),
+    scene::Sampler sampler(replicate_seed(problem_.options.seed, 0x407caU, replicate, sequence_),
                            problem_.stream(i), index);
     const scene::SurfacePoint from = problem_.points.sample(i / 2, sampler.next_2d());
     const SideIndex j = patch_for(i, sampler.next_2d());
@@ -125,7 +125,7 @@ class HotSampler {
   const Problem<N>& problem_;
   const HotPatches<N>& hot_;
   const SightTable& table_;
-  std::uint32_t round_;
+  std::uint32_t sequence_;
 };
 
 }  // namespace
@@ -134,7 +134,7 @@ template <int N>
 bool sample_gather(const Problem<N>& problem, const std::vector<SideValues<N>>& field,
                    const HotPatches<N>& hot, const HemisphereGuide& guide,
                    const std::vector<Draw>& plan, Tally<N>& tally, Work& work, Counters& counters) {
-  const Gatherer<N> gatherer(problem, field, hot, guide, tally.round());
+  const Gatherer<N> gatherer(problem, field, hot, guide, tally.sequence());
   return draw_samples(
       plan, tally, work, counters,
       [&](SideIndex i, int replicate, std::uint32_t first, std::uint32_t count, SideSums<N>& sums,
@@ -146,7 +146,7 @@ bool sample_hot(const Problem<N>& problem, const HotPatches<N>& hot, const Sight
                 const std::vector<std::uint8_t>& mixed, const std::vector<Draw>& plan,
                 Tally<N>& tally, Work& work, Counters& counters) {
   if (hot.empty()) return true;
-  const HotSampler<N> sampler(problem, hot, table, tally.round());
+  const HotSampler<N> sampler(problem, hot, table, tally.sequence());
   return draw_one_by_one(
       plan, tally, work, counters,
       [&](SideIndex i, int replicate, std::uint32_t index, SideSums<N>& sums, Counters& c) {

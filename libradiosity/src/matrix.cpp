@@ -192,15 +192,15 @@ class MatrixSolver {
     FluxBalance& f = result_.flux;
     f = emission_balance(problem_, emitters_, trace_photons(problem_, work_, counters_));
     if (radiosity_.size() == 0) return;
-    const std::vector<Beyond> beyond = beyond_sides(problem_, work_, counters_);
+    const std::vector<Beyond<N>> beyond = beyond_sides(problem_, work_, counters_);
     for (std::size_t k = 0; k < size_; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
-      double left = 0.0;
+      LaneValues<N> left;
       for (int lane = 0; lane < N; ++lane)
-        left += radiosity_(row, lane) * (patches_[k].area - exchange(lane).row(row).sum()) / N;
-      f.escaped += left * beyond[k].escaped;
-      f.absorbed += left * beyond[k].absorbed + patches_[k].area * absorbed(k);
-      f.in_medium += left * beyond[k].in_medium;
+        left[static_cast<std::size_t>(lane)] =
+            radiosity_(row, lane) * (patches_[k].area - exchange(lane).row(row).sum());
+      beyond[k].divide(left, f);
+      f.absorbed += patches_[k].area * absorbed(k);
     }
   }
 

@@ -27,7 +27,11 @@ template <int N>
 /// What samples are for. Those that decide (what is divided, which patches are hot) are never those
 /// that count: what was found bright by chance would be measured again and what was found dark
 /// would not, and the mean would be too dark.
-enum class Purpose : std::uint64_t { Decide = 0x9d17ec7U, Count = 0xd17ec7U };
+enum class Purpose : std::uint64_t {
+  Decide = 0x9d17ec7U,
+  Count = 0xd17ec7U,
+  Compare = 0xc0417a4eU  ///< of other lights with these
+};
 
 /// Light that arrives straight or through panes: draws the samples of `plan` into the tally.
 /// \param which  lights that take part. \param table  of lights that are seen, for their choice;
@@ -37,6 +41,11 @@ enum class DirectLights { All, NoSurfaces };
 template <int N>
 bool sample_direct(const Problem<N>& problem, Purpose purpose, DirectLights which,
                    const SightTable& table, const std::vector<std::uint8_t>& mixed,
+                   const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
+                   scene::Counters& counters);
+/// The same of lights that the scene may not have, all in the first group.
+template <int N>
+bool sample_lights(const Problem<N>& problem, const scene::LightSampler<N>& lights,
                    const std::vector<Draw>& plan, Tally<N>& tally, Work& work,
                    scene::Counters& counters);
 /// The same for solvers that need one estimate of all groups, `samples` for every active side.
@@ -49,10 +58,10 @@ template <int N>
 struct Photons {
   std::vector<Estimate<N>> caustic;  ///< by light group
   std::uint64_t count = 0;
-  double escaped = 0.0;    ///< flux that left the scene before any diffuse surface
-  double absorbed = 0.0;   ///< flux lost at or in specular things before that
-  double in_medium = 0.0;  ///< flux that the air took before that
-  double variance = 0.0;   ///< of escaped + absorbed + in_medium
+  LaneValues<N> escaped{};    ///< flux that left the scene before any diffuse surface
+  LaneValues<N> absorbed{};   ///< flux lost at or in specular things before that
+  LaneValues<N> in_medium{};  ///< flux that the air took before that
+  double variance = 0.0;      ///< of the lane mean of escaped + absorbed + in_medium
 };
 template <int N>
 [[nodiscard]] Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& work,

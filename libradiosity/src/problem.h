@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -139,6 +140,22 @@ struct Problem {
 
   std::vector<std::uint32_t> streams_;
 };
+
+/// By lane, in double precision.
+template <int N>
+using LaneValues = std::array<double, N>;
+template <std::size_t N>
+[[nodiscard]] double lane_mean(const std::array<double, N>& lanes) {
+  double sum = 0.0;
+  for (const double v : lanes) sum += v;
+  return sum / static_cast<double>(N);
+}
+template <int N>
+[[nodiscard]] LaneValues<N> filled(double value) {
+  LaneValues<N> lanes;
+  lanes.fill(value);
+  return lanes;
+}
 
 /// A function of the active sides, by SideIndex; empty vectors read as "not computed".
 template <int N>

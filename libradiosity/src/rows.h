@@ -43,8 +43,8 @@ struct Rows {
   std::vector<Spectrum<N>> spectral;   ///< weights that differ between lanes
   std::vector<std::uint32_t> rays;     ///< valid ones, by active side
   std::vector<std::uint32_t> dropped;  ///< origins inside closed bodies
-  std::vector<float> escaped;          ///< summed weight that left the scene, lane mean
-  std::vector<float> in_medium;        ///< summed weight that the air took, lane mean
+  SideValues<N> escaped;               ///< summed weight that left the scene
+  SideValues<N> in_medium;             ///< summed weight that the air took
   /// Summed first light of hot patches that rays found by chance: plain and body irradiance by
   /// group, by active side. It is not in what the entries read. Empty without hot patches.
   std::vector<Spectrum<N>> hot;

@@ -19,7 +19,7 @@ class ShootingSolver {
         emitters_(find_emitters(problem)),
         unshot_(problem.side_count()),
         received_(problem.side_count()),
-        beyond_(problem.side_count(), 0.0),
+        beyond_(problem.side_count()),
         rays_(problem.shading.has_medium() ? kRaysInAir : kRays) {
     require_diffuse(problem, "shooting");
   }
@@ -85,9 +85,9 @@ class ShootingSolver {
     const Spectrum<N> sent = unshot_[i];
     unshot_[i] = {};
     const LaneValues<N> arrived = find_factors(shooter, i, rays_);
-    for (int lane = 0; lane < N; ++lane)
-      beyond_[i] += static_cast<double>(sent[lane]) *
-                    (shooter.area - arrived[static_cast<std::size_t>(lane)]) / N;
+    for (std::size_t lane = 0; lane < N; ++lane)
+      beyond_[i][lane] +=
+          static_cast<double>(sent[static_cast<int>(lane)]) * (shooter.area - arrived[lane]);
     for (const SideIndex j : problem_.sides.active) {
       if (received_[j].is_zero()) continue;
       const Spectrum<N> e = sent * received_[j];
@@ -161,15 +161,13 @@ class ShootingSolver {
   void balance() {
     FluxBalance& f = result_.flux;
     f = emission_balance(problem_, emitters_, trace_photons(problem_, work_, counters_));
-    const std::vector<Beyond> beyond = beyond_sides(problem_, work_, counters_);
+    const std::vector<Beyond<N>> beyond = beyond_sides(problem_, work_, counters_);
     double variance = f.standard_error * f.standard_error;
     for (std::size_t k = 0; k < beyond.size(); ++k) {
       const SideIndex i = problem_.sides.active[k];
       const double area = static_cast<double>(problem_.area(i));
-      f.escaped += beyond_[i] * beyond[k].escaped;
-      f.absorbed +=
-          beyond_[i] * beyond[k].absorbed + area * absorbed_per_area(problem_, result_, i);
-      f.in_medium += beyond_[i] * beyond[k].in_medium;
+      beyond[k].divide(beyond_[i], f);
+      f.absorbed += area * absorbed_per_area(problem_, result_, i);
       variance += area * area * static_cast<double>(result_.direct.variance[i]);
     }
     f.standard_error = std::sqrt(variance);
@@ -184,11 +182,11 @@ class ShootingSolver {
   Work& work_;
   Counters& counters_;
   Solution<N> result_;
-  std::vector<Emitter<N>> emitters_;  ///< empty: sampled with the other lights
-  SideValues<N> unshot_;              ///< radiosity that has not been sent
-  SideValues<N> received_;            ///< irradiance per exitance of the current shooter
-  std::vector<double> beyond_;        ///< by side: flux, lane mean, that no side received
-  int rays_;                          ///< of a pair
+  std::vector<Emitter<N>> emitters_;   ///< empty: sampled with the other lights
+  SideValues<N> unshot_;               ///< radiosity that has not been sent
+  SideValues<N> received_;             ///< irradiance per exitance of the current shooter
+  std::vector<LaneValues<N>> beyond_;  ///< by side: flux that no side received
+  int rays_;                           ///< of a pair
   std::size_t shots_ = 0;
   std::size_t shooters_ = 0;  ///< emitters included
 };

@@ -126,8 +126,8 @@ void fill(Solution<N>& solution, const Problem<N>& problem, SurfaceField& field,
 /// The mesh that the solver works on. Only rows gain by elements of several sizes.
 template <int N>
 AdaptedMesh make_mesh(const scene::Shading<N>& shading, const Surroundings& surroundings,
-                      const SolveOptions& options, const Previous* previous, Work& work,
-                      scene::Counters& counters) {
+                      const SolveOptions& options, const Previous* previous, bool other_lights,
+                      Work& work, scene::Counters& counters) {
   const bool adapt = options.solver == Solver::Rows && options.max_level > 0;
   // Room for what is divided; a mesh of an asked size is asked for as it is.
   const auto start =
@@ -138,8 +138,8 @@ AdaptedMesh make_mesh(const scene::Shading<N>& shading, const Surroundings& surr
                                                       .max_level = options.max_level});
   work.memory().hold(MemoryBudget::Part::Elements, bytes_of(elements));
   if (previous != nullptr)
-    return {elements_of(shading.scene(), std::move(elements), previous->field), 0.0};
-  if (!adapt) return {std::move(elements), 0.0};
+    elements = elements_of(shading.scene(), std::move(elements), previous->field);
+  if (!adapt || (previous != nullptr && !other_lights)) return {.elements = std::move(elements)};
   work.begin("mesh", 0.1);
   return adapt_mesh(shading, surroundings, std::move(elements), options, work, counters);
 }
@@ -181,7 +181,7 @@ void require_memory(const Problem<N>& problem, const SideShape& shape, MemoryBud
 }
 
 template <int N>
-Solution<N> run_solver(const Problem<N>& problem, Start start, Work& work,
+Solution<N> run_solver(const Problem<N>& problem, const Start& start, Work& work,
                        scene::Counters& counters) {
   if (problem.group_count() > 1 && problem.options.solver != Solver::Rows)
     throw Error("radiosity: light groups need the solver 'rows'");
@@ -209,10 +209,10 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
     reader.emplace(state.data(), state.data() + state.size(), "radiosity: the state to go on from");
     StateHead was;
     was.archive(*reader);
-    check(was, head);
+    start.changed = check(was, head);
     start.state = &*reader;
-    start.same_light = was.scene == head.scene;
     head.mesh_error = was.mesh_error;
+    start.lights = std::move(was.lights);
   }
   const scene::Shading<N> shading(
       query, basis, options.paper_weights ? scene::Weights::Paper : scene::Weights::Radiometric);
@@ -228,10 +228,13 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
       .keep = options.keep};
   options = within_memory(options, query.scene(), shape, previous, memory);
   const Surroundings surroundings(shading.scene());
-  AdaptedMesh mesh = make_mesh(shading, surroundings, options, previous, work, result.counters);
+  AdaptedMesh mesh = make_mesh(shading, surroundings, options, previous, start.changed.light(),
+                               work, result.counters);
   result.elements = std::move(mesh.elements);
-  if (previous == nullptr) head.mesh_error = mesh.error;
+  start.parent = std::move(mesh.parent);
+  if (previous == nullptr || start.changed.light()) head.mesh_error = mesh.error;
   result.mesh_error = head.mesh_error;
+  result.mesh_target = asked_mesh_error(options);
   // Elements that were being divided are no state: another solve would end with others.
   if (work.stopped() || options.solver != Solver::Rows) options.keep = Keep::Nothing;
   result.counters[Counter::Elements] += result.elements.layout.element_count();
@@ -239,13 +242,15 @@ void solve_lanes(const scene::RayQuery& query, const material::SpectralBasis& ba
   shape.body = problem.sides.any_coupled;
   require_memory(problem, shape, memory);
   Solution<N> solution = run_solver(problem, start, work, result.counters);
+  if (solution.mesh_error) result.mesh_error = *solution.mesh_error;
   if (!solution.state.empty()) {
     scene::ArchiveWriter writer;
     head.archive(writer);
     result.state = std::move(writer.bytes);
     result.state.insert(result.state.end(), solution.state.begin(), solution.state.end());
     solution.state = {};
-  } else if (previous != nullptr && start.same_light && options.keep != Keep::Nothing) {
+  } else if (previous != nullptr && !start.changed.reflectance && !start.changed.light() &&
+             options.keep != Keep::Nothing) {
     result.state = previous->state;  // stopped before it had caught up
   }
   fill(solution, problem, result.field, result.groups);

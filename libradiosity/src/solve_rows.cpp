@@ -1,4 +1,6 @@
 #include "error_control.h"
+#include "mesh_error.h"
+#include "relight.h"
 #include "scene/archive.h"
 #include "smoothing.h"
 #include "solvers.h"
@@ -76,11 +78,17 @@ class RowSolver {
         exposed_(problem.side_count(), 1.0f),
         mixed_(problem.side_count(), 0) {}
 
-  /// Takes over where another solver of the same elements was.
-  /// \param same_light  false: reflectances have changed since; then what does not depend on them.
-  void restore(scene::ArchiveReader& reader, bool same_light) {
-    archive(reader);
-    if (!consistent()) reader.damaged();
+  /// Takes over where another solver was.
+  void restore(const Start& start) {
+    archive(*start.state);
+    const SideParents parents(start.parent, problem_.side_count());
+    if (!consistent(parents.old_sides(), start.changed.light())) start.state->damaged();
+    if (start.changed.light()) {
+      relight(parents, start);
+      return;
+    }
+    if (active_before_ != problem_.sides.is_active) start.state->damaged();
+    const bool same = !start.changed.reflectance;
     result_.iteration = restored_iteration_;
     iterations_before_assembly_ = result_.iteration.iterations;
     if (stage_ <= Stage::Rows) {
@@ -90,10 +98,10 @@ class RowSolver {
       result_.valid = problem_.sides.is_active;
       groups_.assign(groups_.size(), GroupLight<N>());
       result_.iteration = {};
-      if (!same_light) forget_reflected();
+      if (!same) forget_reflected();
       return;
     }
-    if (!same_light && hot_reflectance_ != hot_reflectance()) {
+    if (!same && hot_reflectance_ != hot_reflectance()) {
       // What rays found of hot patches by chance is in the rows.
       forget_reflected();
       stage_ = Stage::Rows;
@@ -102,7 +110,7 @@ class RowSolver {
     work_.begin("rows", 0.4);
     if (rows_.rays.empty()) trace_again();
     take_direct();
-    if (same_light) return;
+    if (same) return;
     forget_reflected();
     solve_bounces();
     guide_rays();
@@ -136,6 +144,9 @@ class RowSolver {
     keep();
     result_.state = std::move(state_);
     result_.flux = flux_balance(problem_, result_, photons_, rows_);
+    if (!work_.stopped())
+      result_.mesh_error = find_mesh_error(problem_, result_, direct_, gathered_, counting_share(),
+                                           mixed_, work_, counters_);
     for (std::size_t g = 0; g < groups_.size() && groups_.size() > 1; ++g)
       result_.groups.push_back(part_of(groups_[g], std::move(group_variances_[g])));
     return std::move(result_);
@@ -261,14 +272,18 @@ class RowSolver {
     a(result_.valid);
     a(weights_);
     a(before_);
+    a(smoothing_gain_);
+    active_before_ = problem_.sides.is_active;
+    a(active_before_);
+    brought_.archive(a);
     photons_.caustic.resize(groups_.size());
     for (Estimate<N>& e : photons_.caustic) {
       a(e.irradiance.plain);
       a(e.irradiance.body);
       a(e.variance);
     }
-    for (auto* v : {&photons_.escaped, &photons_.absorbed, &photons_.in_medium, &photons_.variance})
-      a(*v);
+    for (auto* v : {&photons_.escaped, &photons_.absorbed, &photons_.in_medium}) a(*v);
+    a(photons_.variance);
     a(photons_.count);
     for (GroupLight<N>& g : groups_) {
       for (auto* v : {&g.source, &g.bounced, &g.seen, &g.read, &g.solved_source, &g.solved_shot})
@@ -298,6 +313,8 @@ class RowSolver {
       traced.push_back(rows_.rays[k] + rows_.dropped[k]);
     a(traced);
     traced_ = std::move(traced);
+    hot_sums_before_ = rows_.hot;
+    a(hot_sums_before_);
     bool stored = problem_.options.keep == Keep::Rows && stage_ > Stage::Rows;
     a(stored);
     if (!stored) return;
@@ -308,36 +325,222 @@ class RowSolver {
     a(rows_.dropped);
     a(rows_.escaped);
     a(rows_.in_medium);
-    a(rows_.hot);
+    rows_.hot = hot_sums_before_;
     rows_.groups = hot_.groups();
   }
 
-  /// Can what was read be of this problem? Indices are used without checks later.
-  [[nodiscard]] bool consistent() const {
-    const std::size_t n = problem_.side_count();
-    const bool body = problem_.sides.any_coupled;
-    bool ok = stage_ <= Stage::RoundDone && direct_.is_for(n, groups_.size(), body) &&
-              shot_.is_for(n, groups_.size(), body) && gathered_.is_for(n, groups_.size(), body) &&
-              exposed_.size() == n && mixed_.size() == n && result_.valid.size() == n &&
-              (weights_.empty() || weights_.size() == n) &&
+  /// Can what was read be of n sides? Indices are used without checks later.
+  /// \param other_lights  then other sides may be active; smoothings and the table of lights are
+  /// made anew.
+  [[nodiscard]] bool consistent(std::size_t n, bool other_lights) const {
+    const auto active =
+        static_cast<std::size_t>(std::count(active_before_.begin(), active_before_.end(), 1));
+    bool ok = stage_ <= Stage::RoundDone && active_before_.size() == n && is_for(direct_, n) &&
+              is_for(shot_, n) && is_for(gathered_, n) && exposed_.size() == n &&
+              mixed_.size() == n && result_.valid.size() == n &&
+              brought_.is_for(n, groups_.size()) && (weights_.empty() || weights_.size() == n) &&
               (before_.empty() || before_.size() == n);
     const auto in_range = [n](SideIndex i) { return i < n; };
     for (const auto* goals : {&direct_goals_, &shot_goals_, &gather_goals_})
       for (const Goal& g : *goals) ok = ok && in_range(g.side);
     ok = ok && hot_.is_for(n, groups_.size()) &&
-         sight_of_lights_.is_for(n, problem_.shading.lights().finite_count()) &&
+         (other_lights || sight_of_lights_.is_for(n, problem_.shading.lights().finite_count())) &&
          sight_of_hot_.is_for(n, hot_.group_count()) && ray_guide_.is_for(n);
     if (!ok || stage_ <= Stage::Rows) return ok;
-    ok = traced_.size() == problem_.sides.active.size();
+    ok = traced_.size() == active &&
+         hot_sums_before_.size() == (hot_.empty() ? 0 : 2 * groups_.size() * active);
     for (const Estimate<N>& e : photons_.caustic)
       ok = ok && e.irradiance.plain.size() == n && e.variance.size() == n &&
-           e.irradiance.body.size() == (body ? n : 0);
+           e.irradiance.body.size() == (problem_.sides.any_coupled ? n : 0);
     for (const GroupLight<N>& g : groups_) {
       for (const auto* v : {&g.source, &g.bounced, &g.seen, &g.solved_source, &g.solved_shot})
         ok = ok && v->size() == n;
-      ok = ok && g.smoothing && (g.read.empty() || g.read.size() == n);
+      ok = ok && (g.smoothing || other_lights) && (g.read.empty() || g.read.size() == n);
     }
-    return ok && (rows_.rays.empty() || rows_.is_for(n, problem_.sides.active.size()));
+    return ok && (rows_.rays.empty() || rows_.is_for(n, active));
+  }
+  [[nodiscard]] bool is_for(const Tally<N>& tally, std::size_t sides) const {
+    return tally.is_for(sides, groups_.size(), problem_.sides.any_coupled);
+  }
+
+  [[nodiscard]] Tally<N> no_samples() const {
+    return Tally<N>(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
+  }
+
+  /// Goes on with other lights, perhaps on divided elements. Light straight from them is measured
+  /// anew, as often as before. Rows stay or are traced again, and samples that were gathered stay
+  /// where the rows say well enough what has changed for them; so only where the lights that
+  /// changed matter hemispheres are sampled again.
+  void relight(const SideParents& parents, const Start& start) {
+    caught_up_ = false;  // nothing that is worth keeping before the end of this
+    const bool again = stage_ <= Stage::Rows;
+    stage_ = Stage::Light;
+    round_ = 0;
+    for (auto* goals : {&direct_goals_, &shot_goals_, &gather_goals_}) goals->clear();
+    direct_.join_rounds();
+    gathered_.join_rounds();
+    weights_.clear();
+    before_.clear();
+    std::vector<ReadField<N>> before = again ? std::vector<ReadField<N>>() : read_before(parents);
+    const bool difference = !start.changed.emission && groups_.size() == 1;
+    carry_over(parents, again, difference);
+    if (again || start.changed.reflectance) gathered_ = no_samples();
+    hot_ = HotPatches<N>();
+    sight_of_lights_ = sight_of_hot_ = {};
+    ray_guide_ = {};
+    hot_chosen_ = hot_light_known_ = false;
+    groups_.assign(groups_.size(), GroupLight<N>());
+    brought_ = {};
+    result_.iteration = {};
+    caught_up_ = again;
+    if (again) return;
+    work_.begin("direct light", 0.15);
+    sight_of_lights_ = radiosity::sight_of_lights(problem_, regions_, counters_);
+    if (difference)
+      (void)bring_direct(problem_, neighbours_, start.lights, direct_, work_, counters_);
+    draw_direct(missing(std::exchange(draw_again_, {}), direct_));
+    photons_ = trace_photons(problem_, photons_.count, work_, counters_);
+    work_.begin("rows", 0.4);
+    take_direct();
+    choose_hot();
+    know_hot_light(false);
+    trace_changed_rows();
+    draw_shots();
+    solve_bounces();
+    bring_samples(std::move(before));
+    lengthen_rows();
+    solve_bounces();
+    guide_rays();
+    work_.begin("gathering", 0.6);
+    draw_gather(top_up(problem_, gathered_, lit_sides(),
+                       by_error() ? kPilot : problem_.options.gather_rays / 4));
+    std::erase_if(gather_again_, [&](const Goal& g) { return !is_lit(g.side); });
+    draw_gather(missing(std::exchange(gather_again_, {}), gathered_));
+    assemble();
+    // What samples that stayed have read was refined; the rows' noise must not come back with them.
+    refine_field();
+    draw_gather({});
+    assemble();
+    stage_ = Stage::FirstGather;
+    caught_up_ = !work_.stopped();
+  }
+
+  /// What the samples so far have read, on the elements of now.
+  [[nodiscard]] std::vector<ReadField<N>> read_before(const SideParents& parents) const {
+    const std::size_t n = problem_.sides.active.size();
+    std::vector<ReadField<N>> before;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      ReadField<N> field;
+      if (groups_[g].read.empty()) return {};
+      field.all = parents.spread(groups_[g].read);
+      field.entries = parents.spread(without_first_light(groups_[g].read, hot_, g));
+      field.hot_sums.resize(2 * n);
+      if (!hot_sums_before_.empty()) {
+        std::vector<std::uint32_t> row(parents.old_sides(), 0);
+        for (std::uint32_t i = 0, k = 0; i < row.size(); ++i)
+          if (active_before_[i] != 0) row[i] = k++;
+        for (std::size_t k = 0; k < n; ++k) {
+          const SideIndex was = parents.of(problem_.sides.active[k]);
+          if (active_before_[was] == 0) continue;
+          for (const std::size_t body : {0U, 1U})
+            field.hot_sums[2 * k + body] =
+                hot_sums_before_[(row[was] * groups_.size() + g) * 2 + body];
+        }
+      }
+      before.push_back(std::move(field));
+    }
+    return before;
+  }
+
+  /// What is known of the sides themselves and of samples that stay; and how many samples of the
+  /// lights and rays of rows there were.
+  /// \param with_direct  samples of the lights stay as well.
+  void carry_over(const SideParents& parents, bool again, bool with_direct) {
+    const std::uint32_t first =
+        static_cast<std::uint32_t>(by_error() ? kPilot : problem_.options.direct_samples);
+    Tally<N> gathered = no_samples();
+    Tally<N> direct = no_samples();
+    gathered.go_on_from(gathered_);
+    direct.go_on_from(direct_);
+    std::vector<std::uint32_t> traced;
+    std::vector<std::uint32_t> traced_before(parents.old_sides(), 0);
+    if (!again)
+      for (std::uint32_t i = 0, k = 0; i < traced_before.size(); ++i)
+        if (active_before_[i] != 0) traced_before[i] = traced_[k++];
+    std::vector<std::uint8_t> hot(parents.old_sides(), 0);
+    for (const SideIndex i : hot_.sides()) hot[i] = 1;
+    std::vector<std::uint8_t> mixed(problem_.side_count(), 0);
+    std::vector<float> exposed(problem_.side_count(), 1.0f);
+    draw_again_.clear();
+    gather_again_.clear();
+    const auto all = static_cast<std::uint32_t>(std::max(1, problem_.options.row_rays));
+    for (const SideIndex i : problem_.sides.active) {
+      const SideIndex was = parents.of(i);
+      const bool known = !again && active_before_[was] != 0;
+      traced.push_back(known ? traced_before[was]
+                             : std::min(all, static_cast<std::uint32_t>(kPilot)));
+      // Hot patches had many more than others.
+      const std::uint32_t drawn = known && hot[was] == 0 ? direct_.drawn(was) : 0;
+      const auto least =
+          static_cast<std::uint32_t>(samples_of(problem_, {}, i, static_cast<int>(first)) +
+                                     kReplicates - 1) /
+          kReplicates;
+      draw_again_.push_back({i, std::max(drawn, least)});
+      if (known && by_error()) gather_again_.push_back({i, gathered_.drawn(was)});
+      if (known && parents.whole(i)) {
+        gathered.copy(i, gathered_, was);
+        if (with_direct && mixed_[was] == 0) direct.copy(i, direct_, was);
+        mixed[i] = mixed_[was];
+        exposed[i] = exposed_[was];
+      }
+    }
+    result_.valid = problem_.sides.is_active;
+    for (const SideIndex i : problem_.sides.active)
+      if (exposed[i] == 0.0f) result_.valid[i] = 0;
+    gathered_ = std::move(gathered);
+    traced_ = std::move(traced);
+    mixed_ = std::move(mixed);
+    exposed_ = std::move(exposed);
+    if (parents.old_sides() != problem_.side_count()) rows_ = {};
+    if (active_before_ != problem_.sides.is_active) rows_ = {};
+    direct_ = std::move(direct);
+    shot_ = no_samples();
+    work_.memory().hold(MemoryBudget::Part::Samples,
+                        2 * (direct_.bytes() + shot_.bytes() + gathered_.bytes()));
+  }
+
+  /// Rows keep their rays. With hot patches, whose light rays find by chance, they are traced
+  /// again.
+  void trace_changed_rows() {
+    if (rows_.rays.empty() || !hot_sums_before_.empty() || !hot_.empty()) {
+      rows_ = {};
+      trace_again();
+    }
+    caught_up_ = false;
+    const std::vector<float> exposed = exposed_;
+    find_buried();
+    for (const SideIndex i : problem_.sides.active)
+      if (mixed_[i] != 0) exposed_[i] = exposed[i];
+    draw_direct_of_mixed();
+    take_direct();
+  }
+
+  void bring_samples(std::vector<ReadField<N>> before) {
+    if (before.empty()) {
+      gathered_ = no_samples();
+      return;
+    }
+    std::vector<ReadField<N>> now;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      ReadField<N> field;
+      field.all = groups_[g].source;
+      for (const SideIndex i : problem_.sides.active) field.all[i] += groups_[g].seen[i];
+      field.entries = without_first_light(field.all, hot_, g);
+      field.hot_sums = hot_sums_of(rows_.hot, groups_.size(), g, rows_.size());
+      groups_[g].read = field.all;
+      now.push_back(std::move(field));
+    }
+    brought_ = BroughtSamples<N>(problem_, neighbours_, rows_, before, now, gathered_);
   }
 
   /// The same rays as before, in the same rounds.
@@ -365,11 +568,9 @@ class RowSolver {
   /// What depends on reflectances. Which patches are hot does not matter to the result, and their
   /// light straight from the lights is what it was.
   void forget_reflected() {
-    const auto empty = [&] {
-      return Tally<N>(problem_.side_count(), groups_.size(), problem_.sides.any_coupled);
-    };
-    if (hot_reflectance_ != hot_reflectance()) shot_ = empty();
-    gathered_ = empty();
+    if (hot_reflectance_ != hot_reflectance()) shot_ = no_samples();
+    gathered_ = no_samples();
+    brought_ = {};
     ray_guide_ = {};
     for (GroupLight<N>& g : groups_) g = GroupLight<N>();
     if (stage_ > Stage::Rows) take_direct();
@@ -388,16 +589,14 @@ class RowSolver {
     work_.begin("rows", 0.4);
     take_direct();
     if (!hot_chosen_) choose_hot();
-    know_hot_light();
+    know_hot_light(true);
     rows_ = trace_rows<N>(problem_, hot_, {}, std::vector<std::uint8_t>(n, 1), 0, first, work_,
                           counters_);
     find_buried();
     draw_direct_of_mixed();
     take_direct();
     importance_ = view_importance(problem_, rows_, counters_);
-    draw_hot(top_up(problem_, shot_, problem_.sides.active,
-                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2),
-                    importance_));
+    draw_shots();
     solve_bounces();
     (void)paused(Stage::Rows);
     show_bounces(Bounces::Rows);
@@ -406,12 +605,31 @@ class RowSolver {
       return;
     }
     work_.begin("rows", 0.6);
-    for (int from = first, to = 2 * first; from < all; from = to, to *= 2) {
+    lengthen_rows();
+    solve_bounces();
+    guide_rays();
+    (void)paused(Stage::Rows);
+    show_bounces(Bounces::Rows);
+  }
+
+  void draw_shots() {
+    draw_hot(top_up(problem_, shot_, problem_.sides.active,
+                    by_error() ? kPilot : std::max(kPilot, problem_.options.gather_rays / 2),
+                    importance_));
+  }
+
+  /// In rounds, as far as there is memory, the rows of sides that the rays so far found lit.
+  void lengthen_rows() {
+    const int all = std::max(1, problem_.options.row_rays);
+    for (int from = std::min(kPilot, all), to = 2 * from; from < all; from = to, to *= 2) {
       to = std::min(to, all);
-      std::vector<std::uint8_t> wanted(n, 0);
-      for (std::size_t k = 0; k < n; ++k) {
+      std::vector<std::uint8_t> wanted(rows_.size(), 0);
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
         const SideIndex i = problem_.sides.active[k];
-        wanted[k] = is_lit(i) && samples_of(problem_, importance_, i, all) >= to ? 1 : 0;
+        wanted[k] = is_lit(i) && rows_.rays[k] + rows_.dropped[k] == static_cast<unsigned>(from) &&
+                            samples_of(problem_, importance_, i, all) >= to
+                        ? 1
+                        : 0;
       }
       if (!memory_holds(wanted, to - from)) {
         work_.memory().give_up("rows of " + std::to_string(from) + " rays instead of " +
@@ -420,10 +638,6 @@ class RowSolver {
       }
       rows_ = trace_rows<N>(problem_, hot_, std::move(rows_), wanted, from, to, work_, counters_);
     }
-    solve_bounces();
-    guide_rays();
-    (void)paused(Stage::Rows);
-    show_bounces(Bounces::Rows);
   }
 
   /// From now on rays go where the rows and the best field so far say that light comes from.
@@ -470,7 +684,8 @@ class RowSolver {
 
   /// An error in the light of hot patches is one error of everything they light, so they get many
   /// more light samples than others before it is used.
-  void know_hot_light() {
+  /// \param asked_before  sides with more samples got them here.
+  void know_hot_light(bool asked_before) {
     constexpr int kFirst = 256;
     constexpr int kMost = 65536;
     if (hot_.empty() || hot_light_known_) return;
@@ -481,7 +696,7 @@ class RowSolver {
       bool beyond = false;  // then this was not enough when it was asked before
       for (const SideIndex i : hot_.sides()) {
         goals.push_back({i, until});
-        beyond = beyond || direct_.drawn(i) > until;
+        beyond = beyond || (asked_before && direct_.drawn(i) > until);
       }
       draw_direct(missing(goals, direct_));
       take_direct();
@@ -533,7 +748,7 @@ class RowSolver {
   void draw_direct_of_mixed() {
     std::vector<SideIndex> again;
     for (const SideIndex i : problem_.sides.active)
-      if (exposed_[i] < 1.0f && result_.valid[i] != 0) again.push_back(i);
+      if (exposed_[i] < 1.0f && result_.valid[i] != 0 && mixed_[i] == 0) again.push_back(i);
     for (const SideIndex i : again) {
       mixed_[i] = 1;
       direct_.forget(i);
@@ -731,7 +946,7 @@ class RowSolver {
       const SideIndex i = problem_.sides.active[k];
       if (gathered_.valid(i) == 0) continue;
       rows += weights[i] * row_variance(k, kAllGroups);
-      fresh += weights[i] * gathered_.variance(i);
+      fresh += weights[i] * (gathered_.variance(i) + brought_variance(i, kAllGroups, 1.0));
     }
     fresh_share_ = rows + fresh > 0.0 ? static_cast<float>(rows / (rows + fresh)) : 1.0f;
   }
@@ -742,6 +957,11 @@ class RowSolver {
       for (const SideIndex i : problem_.sides.active)
         irradiance[i] += static_cast<double>((g.source[i] + g.bounced[i]).mean());
     return irradiance;
+  }
+
+  /// What samples that were brought up to date add to the variance of a pooled estimate.
+  [[nodiscard]] double brought_variance(SideIndex i, GroupChoice group, double fresh) const {
+    return brought_.variance(i, group.value_or(groups_.size()), fresh, gathered_);
   }
 
   void pool(std::size_t group) {
@@ -865,7 +1085,8 @@ class RowSolver {
       v.direct[i] = static_cast<float>(direct[i]);
       v.caustic[i] = caustic_variance(i, group);
       const double share = fresh_share(k);
-      const double row = std::pow(1.0 - share, 2) * row_variance(k, group);
+      const double row = std::max(0.0, std::pow(1.0 - share, 2) * row_variance(k, group) +
+                                           brought_variance(i, group, share));
       v.indirect[i] = static_cast<float>(row + share * share * fresh[i] + shot[i]);
       v.rest[i] = v.caustic[i] + static_cast<float>(row);
       total[i] = static_cast<double>(v.direct[i]) + static_cast<double>(v.caustic[i]) +
@@ -922,7 +1143,10 @@ class RowSolver {
     if (direct_.round() == 0) weights_ = weights_now();
     raw_error_ = std::sqrt(weighted(raw_variance(v)));
     result_.error_estimate = raw_error_;
-    if (result_smoothing_) state_smoothed_error(found, v);
+    if (!result_smoothing_) return;
+    state_smoothed_error(found, v);
+    if (raw_error_ > 0.0)
+      smoothing_gain_ = std::clamp(std::pow(result_.error_estimate / raw_error_, 2), 0.05, 1.0);
   }
 
   /// Variance of each side's total by its own samples; Eq. 8 takes it with the weights of before
@@ -941,7 +1165,8 @@ class RowSolver {
 
   /// The last round knows nothing of what smooths, so its own mean C tells the error of the
   /// smoothed mean: the square of their difference is that of the systematic error (with what
-  /// earlier rounds left) and the variance that C has in it.
+  /// earlier rounds left) and the variance that C has in it. With a small last round C is noisy;
+  /// the error is no less than what the noise of all rounds leaves after smoothing.
   void state_smoothed_error(const SideValues<N>& found, const Variances& v) {
     const auto fresh = static_cast<double>(fresh_share_);
     const std::array<std::pair<const Tally<N>*, double>, 3> parts{
@@ -958,6 +1183,7 @@ class RowSolver {
       difference[i] = static_cast<double>(total_plain(result_, i).mean()) - last;
     }
     double sampled = 0.0;
+    double least = 0.0;
     double systematic = 0.0;
     for (const SideIndex i : problem_.sides.active)
       systematic += weights_[i] * difference[i] * difference[i];
@@ -967,8 +1193,10 @@ class RowSolver {
       const double share = part * tally->last_share();
       sampled += weighted(result_smoothing_->variance(own, share, 0.0));
       systematic -= weighted(result_smoothing_->variance(own, share, -part));
+      for (const SideIndex i : problem_.sides.active) own[i] = tally->variance(i);
+      least += weighted(result_smoothing_->variance(own, part, 0.0));
     }
-    result_.error_estimate = std::sqrt(sampled + std::max(0.0, systematic) + weighted(v.rest));
+    result_.error_estimate = std::sqrt(std::max(least, sampled + systematic) + weighted(v.rest));
   }
 
   /// From the irradiance so far.
@@ -1055,6 +1283,7 @@ class RowSolver {
     const double target = std::pow(kMargin * problem_.options.error, 2);
     const double caustics = weighted(result_.caustic.variance);
     if (caustics > 0.5 * target && !more_photons()) return false;
+    if (gathered_.round() == 0) brought_.end_first_round(gathered_);
     for (Tally<N>* tally : {&direct_, &gathered_, &shot_})
       if (tally->round() == 0) tally->end_round(1.0);
     weights_ = weights_now();
@@ -1075,16 +1304,15 @@ class RowSolver {
                                          stratum(shot_, patches, kShadowRayCost)};
     // Rows and gathered light are estimates of the same.
     const double share = static_cast<double>(fresh_share_);
-    const std::vector<double> so_far{weighted(direct_), share * weighted(gathered_),
+    const std::vector<double> so_far{weighted(direct_), share * weighted_gathered(),
                                      weighted(shot_)};
     double sampled = 0.0;
     for (const double v : so_far) sampled += v;
     if (!(sampled > 0.0)) return false;
     // What errors of other sides' light pass on becomes less with these.
     const double passed_on = std::max(1.0, (raw_error_ * raw_error_ - caustics) / sampled);
-    const double smoother = std::clamp(
-        result_.error_estimate * result_.error_estimate / (raw_error_ * raw_error_), 0.05, 1.0);
-    const double wanted = std::max((target - caustics) / (passed_on * smoother), sampled / 256.0);
+    const double wanted =
+        std::max((target - caustics) / (passed_on * smoothing_gain_), sampled / 256.0);
     const double effort =
         round_effort(problem_, weights_, exposed_, strata, so_far, wanted, cost_so_far());
     if (!(effort > 0.0)) return false;
@@ -1130,9 +1358,16 @@ class RowSolver {
     for (const SideIndex i : problem_.sides.active) sum += weights_[i] * tally.variance(i);
     return sum;
   }
+  /// With what samples that were brought up to date add.
+  [[nodiscard]] double weighted_gathered() const {
+    double sum = weighted(gathered_);
+    for (const SideIndex i : problem_.sides.active)
+      sum += weights_[i] * brought_variance(i, kAllGroups, 1.0);
+    return sum;
+  }
   /// The round joins those before it.
   void end_round(Tally<N>& tally) const {
-    const double before = weighted(tally);
+    const double before = &tally == &gathered_ ? weighted_gathered() : weighted(tally);
     double now = 0.0;
     for (const SideIndex i : problem_.sides.active) now += weights_[i] * tally.variance_now(i);
     tally.end_round(before + now > 0.0 ? before / (before + now) : 0.5);
@@ -1202,6 +1437,7 @@ class RowSolver {
   std::vector<float> importance_;    ///< of errors to the views, by side; empty: all count
   std::vector<double> weights_;      ///< of squared errors, by side
   double raw_error_ = 0.0;           ///< before smoothing
+  double smoothing_gain_ = 1.0;      ///< what that left of its square when it was last done
   SideValues<N> before_;             ///< irradiance before the last round, not smoothed
   SideValues<N> found_;              ///< irradiance, not smoothed
   std::optional<Smoothing<N>> result_smoothing_;
@@ -1212,9 +1448,14 @@ class RowSolver {
   int round_ = 0;
   std::vector<Goal> direct_goals_, shot_goals_, gather_goals_;
   bool hot_chosen_ = false, hot_light_known_ = false;
-  std::vector<float> hot_reflectance_;  ///< that the solver before this one knew
-  std::vector<std::uint32_t> traced_;   ///< rays of each row of the solver before this one
-  bool caught_up_ = true;               ///< false: stopped before those were traced again
+  std::vector<float> hot_reflectance_;        ///< that the solver before this one knew
+  std::vector<std::uint32_t> traced_;         ///< rays of each row of the solver before this one
+  std::vector<std::uint8_t> active_before_;   ///< its active sides
+  std::vector<Spectrum<N>> hot_sums_before_;  ///< its Rows::hot
+  std::vector<Goal> draw_again_;              ///< its samples of lights
+  std::vector<Goal> gather_again_;            ///< and of hemispheres, if an error is asked for
+  BroughtSamples<N> brought_;
+  bool caught_up_ = true;  ///< false: stopped before those were traced again
   std::vector<char> state_;
   int iterations_before_assembly_ = 0;
   Iteration restored_iteration_;
@@ -1223,15 +1464,15 @@ class RowSolver {
 }  // namespace
 
 template <int N>
-Solution<N> solve_with_rows(const Problem<N>& problem, Start start, Work& work,
+Solution<N> solve_with_rows(const Problem<N>& problem, const Start& start, Work& work,
                             Counters& counters) {
   RowSolver<N> solver(problem, work, counters);
-  if (start.state != nullptr) solver.restore(*start.state, start.same_light);
+  if (start.state != nullptr) solver.restore(start);
   return solver.solve();
 }
 
 #define ATRIUM_INSTANTIATE(N) \
-  template Solution<N> solve_with_rows(const Problem<N>&, Start, Work&, Counters&);
+  template Solution<N> solve_with_rows(const Problem<N>&, const Start&, Work&, Counters&);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)
 ATRIUM_INSTANTIATE(4)

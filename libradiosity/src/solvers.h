@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "iterate.h"
 #include "passes.h"
 #include "scene/archive.h"
@@ -24,7 +26,8 @@ struct Solution {
   FluxBalance flux;
   Iteration iteration;
   double error_estimate = 0.0;
-  bool error_reached = false;  ///< that was asked for
+  std::optional<double> mesh_error;  ///< see mesh_error.h; if the solver measured it
+  bool error_reached = false;        ///< that was asked for
 
   explicit Solution(const Problem<N>& problem)
       : direct(problem.side_count(), problem.sides.any_coupled),
@@ -45,15 +48,28 @@ template <int N>
 [[nodiscard]] Spectrum<N> ambient_irradiance(const Problem<N>& problem, const Solution<N>& solution,
                                              const SideValues<N>& unshot);
 
+/// How a scene differs from the one that a state is of.
+struct Changed {
+  bool reflectance = false;  ///< of diffuse surfaces
+  bool lights = false;       ///< Scene::lights
+  bool emission = false;     ///< environment, what surfaces emit
+
+  /// Then elements may have been divided, too.
+  [[nodiscard]] bool light() const { return lights || emission; }
+};
+
 /// What is known before.
 struct Start {
-  scene::ArchiveReader* state = nullptr;  ///< Solution::state of the same elements
-  bool same_light = true;                 ///< false: reflectances have changed since
+  scene::ArchiveReader* state = nullptr;  ///< Solution::state
+  Changed changed;
+  /// By element: the one of the state that it is or is part of; empty: the same elements.
+  std::vector<std::uint32_t> parent;
+  std::vector<scene::Light> lights;  ///< of the scene that the state is of
 };
 
 /// \throws Error  if the state is damaged.
 template <int N>
-[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, Start start, Work& work,
+[[nodiscard]] Solution<N> solve_with_rows(const Problem<N>& problem, const Start& start, Work& work,
                                           scene::Counters& counters);
 /// \throws Error  if the scene has specular surfaces or more sides than a dense matrix can hold.
 template <int N>
@@ -101,16 +117,26 @@ template <int N>
                                        const Photons<N>& photons, const Rows<N>& rows);
 
 /// Where the light of a side goes that no side receives, as shares of it.
+template <int N>
 struct Beyond {
-  double escaped = 1.0;
-  double absorbed = 0.0;  ///< by surfaces without elements: black ones, and inner faces of bodies
-  double in_medium = 0.0;
+  LaneValues<N> escaped = filled<N>(1.0);
+  LaneValues<N> absorbed{};  ///< by surfaces without elements: black ones, inner faces of bodies
+  LaneValues<N> in_medium{};
+
+  /// Adds a flux by lane to what it becomes, lane means.
+  void divide(const LaneValues<N>& flux, FluxBalance& balance) const {
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      balance.escaped += flux[lane] * escaped[lane] / N;
+      balance.absorbed += flux[lane] * absorbed[lane] / N;
+      balance.in_medium += flux[lane] * in_medium[lane] / N;
+    }
+  }
 };
 /// For solvers that know from factors how much that is; what becomes of it is asked of hemisphere
 /// rays. By active side.
 template <int N>
-[[nodiscard]] std::vector<Beyond> beyond_sides(const Problem<N>& problem, Work& work,
-                                               scene::Counters& counters);
+[[nodiscard]] std::vector<Beyond<N>> beyond_sides(const Problem<N>& problem, Work& work,
+                                                  scene::Counters& counters);
 
 /// \throws Error  naming the solver if something mirrors, refracts or glosses.
 template <int N>

@@ -2,8 +2,6 @@
 
 #include <cstdio>
 
-#include "scene/solution_io.h"
-
 namespace atrium::radiosity {
 
 using scene::SurfaceField;
@@ -30,35 +28,49 @@ std::string describe(const SolveOptions& o) {
   return text;
 }
 
-/// The groups and, as a number, who belongs to which (FNV-1a).
-std::string describe(const scene::LightGroups& groups) {
-  std::string text = ", groups";
+std::string names_of(const scene::LightGroups& groups) {
+  std::string text;
   for (const std::string& name : groups.names) text += " '" + name + "'";
+  return text;
+}
+
+/// FNV-1a.
+std::uint64_t members_of(const scene::LightGroups& groups) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const std::uint32_t g : groups.group) hash = (hash ^ g) * 0x100000001b3U;
-  return text + " " + std::to_string(hash);
+  return hash;
 }
 
 }  // namespace
 
 StateHead head_of(const scene::Scene& scene, const material::SpectralBasis& basis,
                   const SolveOptions& options) {
-  return {1,
-          scene::hash_scene(scene),
-          scene::hash_scene_but_reflectance(scene),
-          basis.describe(),
-          describe(options) + describe(scene::find_light_groups(scene, options.light_groups)),
-          0.0};
+  const scene::LightGroups groups = scene::find_light_groups(scene, options.light_groups);
+  return {.scene = scene::hash_parts(scene),
+          .basis = basis.describe(),
+          .options = describe(options),
+          .group_names = names_of(groups),
+          .group_members = members_of(groups),
+          .lights = scene.lights};
 }
 
-void check(const StateHead& was, const StateHead& is) {
-  if (was.but_reflectance != is.but_reflectance)
-    throw Error("radiosity: the solution to go on from is of another scene");
-  if (was.basis != is.basis)
-    throw Error("radiosity: the solution to go on from has " + was.basis + ", not " + is.basis);
+Changed check(const StateHead& was, const StateHead& is) {
+  const std::string solution = "radiosity: the solution to go on from ";
+  if (was.scene.geometry != is.scene.geometry)
+    throw Error(solution + "is of other geometry: surfaces were moved, added or removed");
+  if (was.scene.materials != is.scene.materials)
+    throw Error(solution + "is of other materials: more than reflectances and emission differs");
+  if (was.basis != is.basis) throw Error(solution + "has " + was.basis + ", not " + is.basis);
   if (was.options != is.options)
-    throw Error("radiosity: the solution to go on from was made with " + was.options + "; not " +
-                is.options);
+    throw Error(solution + "was made with " + was.options + "; not " + is.options);
+  if (was.group_names != is.group_names)
+    throw Error(solution + "has the light groups" + was.group_names + ", not" + is.group_names);
+  const Changed changed{.reflectance = was.scene.reflectance != is.scene.reflectance,
+                        .lights = was.scene.lights != is.scene.lights,
+                        .emission = was.scene.emission != is.scene.emission};
+  if (!changed.light() && was.group_members != is.group_members)
+    throw Error(solution + "has the same lights in other groups");
+  return changed;
 }
 
 Elements elements_of(const scene::Scene& scene, Elements elements, const SurfaceField& field) {

@@ -71,13 +71,17 @@ class Tally {
         squares_(sides, 0.0f) {}
 
   [[nodiscard]] std::size_t groups() const { return groups_; }
-  /// Number of the round that is being drawn: part of the samples' seed.
+  /// Number of the round that is being drawn.
   [[nodiscard]] std::uint32_t round() const { return round_; }
+  /// Likewise of its sequences: part of the samples' seed.
+  [[nodiscard]] std::uint32_t sequence() const { return sequence_; }
+  /// Weight of the first round in the mean.
+  [[nodiscard]] double first_share() const { return first_share_; }
   [[nodiscard]] std::uint64_t bytes() const {
     return bytes_of(plain_) + bytes_of(body_) + bytes_of(replicate_) + bytes_of(valid_) +
            bytes_of(drawn_) + bytes_of(squares_) + bytes_of(past_plain_) + bytes_of(past_body_) +
-           bytes_of(past_variance_) + bytes_of(past_valid_) + bytes_of(last_mean_) +
-           bytes_of(last_variance_);
+           bytes_of(past_replicate_) + bytes_of(past_variance_) + bytes_of(past_valid_) +
+           bytes_of(last_mean_) + bytes_of(last_variance_);
   }
   /// Samples drawn so far in each replicate of this round, valid or not.
   [[nodiscard]] std::uint32_t drawn(SideIndex i) const { return drawn_[i]; }
@@ -109,6 +113,7 @@ class Tally {
   void shift(SideIndex i, std::size_t group, const Spectrum<N>& plain, const Spectrum<N>& body) {
     const std::size_t at = group * sides_ + i;
     const auto n = static_cast<float>(valid_now(i));
+    count_shift(i, plain.mean());
     plain_[at] += n * plain;
     if (!body_.empty()) body_[at] += n * body;
     for (std::size_t r = 0; r < kReplicates; ++r)
@@ -116,6 +121,32 @@ class Tally {
     if (past_valid_.empty() || past_valid_[i] == 0) return;
     past_plain_[at] += plain;
     if (!body_.empty()) past_body_[at] += body;
+    for (float& mean : past_replicate_[at]) mean += plain.mean();
+  }
+  /// Adds to every sample of a replicate what the same replicate of another tally has on average;
+  /// its spread then has the errors of both; first round only. \param sign  of what is added.
+  void shift(SideIndex i, std::size_t group, const Tally& by, float sign) {
+    const std::size_t at = group * sides_ + i;
+    const float n = sign * static_cast<float>(valid_now(i));
+    count_shift(i, sign * by.mean(i, group).mean());
+    plain_[at] += n * by.mean(i, group);
+    if (!body_.empty()) body_[at] += n * by.mean_body(i, group);
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      if (by.valid_[i][r] > 0)
+        replicate_[at][r] += sign * static_cast<float>(valid_[i][r]) * by.replicate_[at][r] /
+                             static_cast<float>(by.valid_[i][r]);
+  }
+  /// Mean square (lane mean) of the difference between two tallies' replicates; first rounds only.
+  [[nodiscard]] static double mean_square(SideIndex i, std::size_t group, const Tally& a,
+                                          const Tally& b) {
+    const std::size_t at = group * a.sides_ + i;
+    double sum = 0.0;
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      const double d = static_cast<double>(a.replicate_[at][r]) / std::max(1U, a.valid_[i][r]) -
+                       static_cast<double>(b.replicate_[at][r]) / std::max(1U, b.valid_[i][r]);
+      sum += d * d / kReplicates;
+    }
+    return sum;
   }
   /// Starts a side again, from the first sample on; first round only.
   void forget(SideIndex i) {
@@ -145,15 +176,50 @@ class Tally {
     if (round_ == 0) {
       past_plain_.resize(sides_ * groups_);
       past_body_.resize(body_.size());
+      past_replicate_.resize(sides_ * groups_);
       past_variance_.resize(sides_ * (groups_ + 1), 0.0f);
       past_valid_.resize(sides_, 0);
       last_mean_.resize(sides_, 0.0f);
       last_variance_.resize(sides_, 0.0f);
     }
     last_share_ = round_ > 0 ? share : 1.0;
+    first_share_ *= round_ > 0 ? 1.0 - share : 1.0;
     for (SideIndex i = 0; i < sides_; ++i) end_round_of(i, share);
     ++round_;
+    ++sequence_;
   }
+  /// All rounds that are complete become the first one, of as many samples with their joined means
+  /// by replicate; what was drawn of another one is dropped. What comes next has new sequences.
+  void join_rounds() {
+    if (round_ == 0) return;
+    for (SideIndex i = 0; i < sides_; ++i) {
+      const std::uint32_t each =
+          past_valid_[i] > 0 ? std::max(1U, past_valid_[i] / kReplicates) : 0U;
+      const float kept = past_valid_[i] > 0
+                             ? static_cast<float>(kReplicates * each) / static_cast<float>(valid(i))
+                             : 0.0f;
+      drawn_[i] = each;
+      valid_[i].fill(each);
+      squares_[i] *= kept;
+      for (std::size_t g = 0; g < groups_; ++g) {
+        const std::size_t at = g * sides_ + i;
+        const auto n = static_cast<float>(kReplicates * each);
+        plain_[at] = n * past_plain_[at];
+        if (!body_.empty()) body_[at] = n * past_body_[at];
+        for (std::size_t r = 0; r < kReplicates; ++r)
+          replicate_[at][r] = static_cast<float>(each) * past_replicate_[at][r];
+      }
+    }
+    past_plain_.clear();
+    past_body_.clear();
+    past_replicate_.clear();
+    for (auto* v : {&past_variance_, &last_mean_, &last_variance_}) v->clear();
+    past_valid_.clear();
+    round_ = 0;
+    last_share_ = first_share_ = 1.0;
+  }
+  /// Draws from the sequence that another tally would draw from.
+  void go_on_from(const Tally& other) { sequence_ = other.sequence_; }
 
   /// The last round that is complete, lane means of all groups: its share in the mean, its own
   /// mean, the variance of that.
@@ -171,6 +237,18 @@ class Tally {
   [[nodiscard]] Spectrum<N> mean_body(SideIndex i, std::size_t group) const {
     const std::size_t at = group * sides_ + i;
     return round_ > 0 ? past_body_[at] : per_sample(body_[at], i);
+  }
+  /// Mean (lane mean) of half of the replicates; 0 without samples.
+  [[nodiscard]] float half_mean(SideIndex i, std::size_t group, bool second) const {
+    const std::size_t at = group * sides_ + i;
+    const std::size_t from = second ? kReplicates / 2 : 0;
+    float sum = 0.0f;
+    std::uint32_t n = 0;
+    for (std::size_t r = from; r < from + kReplicates / 2; ++r) {
+      sum += round_ > 0 ? past_replicate_[at][r] : replicate_[at][r];
+      n += round_ > 0 ? 1U : valid_[i][r];
+    }
+    return n > 0 ? sum / static_cast<float>(n) : 0.0f;
   }
   /// Variance of one group's mean (lane mean); 0 without two replicates.
   [[nodiscard]] double variance(SideIndex i, std::size_t group) const {
@@ -199,6 +277,7 @@ class Tally {
     a(sides_);
     a(groups_);
     a(round_);
+    a(sequence_);
     a(plain_);
     a(body_);
     a(replicate_);
@@ -207,11 +286,13 @@ class Tally {
     a(squares_);
     a(past_plain_);
     a(past_body_);
+    a(past_replicate_);
     a(past_variance_);
     a(past_valid_);
     a(last_mean_);
     a(last_variance_);
     a(last_share_);
+    a(first_share_);
   }
   [[nodiscard]] bool is_for(std::size_t sides, std::size_t groups, bool body) const {
     const std::size_t past = round_ > 0 ? 1 : 0;
@@ -219,6 +300,7 @@ class Tally {
            body_.size() == (body ? plain_.size() : 0) && replicate_.size() == plain_.size() &&
            valid_.size() == sides && drawn_.size() == sides && squares_.size() == sides &&
            past_plain_.size() == past * plain_.size() && past_body_.size() == past * body_.size() &&
+           past_replicate_.size() == past * plain_.size() &&
            past_variance_.size() == past * sides * (groups + 1) &&
            past_valid_.size() == past * sides && last_mean_.size() == past * sides &&
            last_variance_.size() == past * sides;
@@ -228,6 +310,12 @@ class Tally {
   [[nodiscard]] Spectrum<N> per_sample(const Spectrum<N>& sum, SideIndex i) const {
     const std::uint32_t n = valid_now(i);
     return n > 0 ? sum * (1.0f / static_cast<float>(n)) : Spectrum<N>();
+  }
+  /// Squares of samples that become larger by this, whatever each was.
+  void count_shift(SideIndex i, float by) {
+    float m = 0.0f;
+    for (std::size_t g = 0; g < groups_; ++g) m += mean(i, g).mean();
+    squares_[i] = std::max(0.0f, squares_[i] + static_cast<float>(valid(i)) * by * (2.0f * m + by));
   }
   /// Of a ratio of sums over replicates (linearised), groups first .. last - 1.
   [[nodiscard]] double variance_now(SideIndex i, std::size_t first, std::size_t last) const {
@@ -270,6 +358,15 @@ class Tally {
         past_variance_[at] = static_cast<float>(
             (1.0 - w) * (1.0 - w) * static_cast<double>(past_variance_[at]) + w * w * v);
         if (g == groups_) break;
+        for (std::size_t r = 0; r < kReplicates; ++r) {
+          float& past = past_replicate_[at][r];
+          const auto n = static_cast<float>(valid_[i][r]);
+          // One that no sample was valid of has nothing to say either.
+          const float mean = n > 0.0f             ? replicate_[at][r] / n
+                             : past_valid_[i] > 0 ? past
+                                                  : per_sample(plain_[at], i).mean();
+          past = static_cast<float>(1.0 - w) * past + static_cast<float>(w) * mean;
+        }
         put(past_plain_[at], per_sample(plain_[at], i));
         if (!body_.empty()) put(past_body_[at], per_sample(body_[at], i));
       }
@@ -285,17 +382,18 @@ class Tally {
   }
 
   std::size_t sides_ = 0, groups_ = 0;
-  std::uint32_t round_ = 0;
+  std::uint32_t round_ = 0, sequence_ = 0;
   std::vector<Spectrum<N>> plain_, body_;  ///< sums of this round
   std::vector<std::array<float, kReplicates>> replicate_;
   std::vector<std::array<std::uint32_t, kReplicates>> valid_;
   std::vector<std::uint32_t> drawn_;
   std::vector<float> squares_;                       ///< of all rounds
   std::vector<Spectrum<N>> past_plain_, past_body_;  ///< means of the rounds before
-  std::vector<float> past_variance_;                 ///< of each group's, then of the sum of all
+  std::vector<std::array<float, kReplicates>> past_replicate_;
+  std::vector<float> past_variance_;  ///< of each group's, then of the sum of all
   std::vector<std::uint32_t> past_valid_;
   std::vector<float> last_mean_, last_variance_;
-  double last_share_ = 1.0;
+  double last_share_ = 1.0, first_share_ = 1.0;
 };
 
 /// How many more samples each replicate of a side gets.

@@ -13,9 +13,8 @@ using scene::Counters;
 template <int N>
 struct Chunk {
   std::vector<typename Rows<N>::Entry> entries;
-  std::vector<Spectrum<N>> spectral, hot;
+  std::vector<Spectrum<N>> spectral, hot, escaped, in_medium;
   std::vector<std::uint32_t> counts, rays, dropped;
-  std::vector<float> escaped, in_medium;
 
   [[nodiscard]] std::uint64_t bytes() const {
     return bytes_of(entries) + bytes_of(spectral) + bytes_of(hot) + bytes_of(counts) +
@@ -77,8 +76,7 @@ class RowTracer {
   void copy_old(std::size_t k, Chunk<N>& chunk) {
     row_.clear();
     std::fill(hot_sums_.begin(), hot_sums_.end(), Spectrum<N>());
-    float escaped = 0.0f;
-    float in_medium = 0.0f;
+    Spectrum<N> escaped, in_medium;
     std::uint32_t rays = 0;
     std::uint32_t dropped = 0;
     if (k < old_.size()) {
@@ -110,8 +108,8 @@ class RowTracer {
             if (hot_.contains(at.side)) put_hot(rays, r, at, weight);
           },
           [&](std::size_t, const PathEnd<N>& end) {
-            chunk.escaped.back() += end.escaped.mean();
-            chunk.in_medium.back() += end.in_medium.mean();
+            chunk.escaped.back() += end.escaped;
+            chunk.in_medium.back() += end.in_medium;
             ++(end.inside_solid ? chunk.dropped : chunk.rays).back();
           });
     }

@@ -6,10 +6,6 @@
 
 namespace atrium::radiosity {
 
-/// By lane, in double precision.
-template <int N>
-using LaneValues = std::array<double, N>;
-
 /// How a pair of patches is sampled: `rays` points of the low-discrepancy sequence of seed and
 /// stream.
 struct PairSamples {

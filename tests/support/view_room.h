@@ -82,7 +82,7 @@ class ViewRoom {
     material.name = "material_id";
     for (const Array& a : {object_, material, element_, level_, error_})
       mesh_.cell_arrays.push_back(a);
-    mesh_.field_data = {{"unit", "lx"}};
+    mesh_.field_data = {{"unit", {"lx"}}};
     return std::move(mesh_);
   }
 

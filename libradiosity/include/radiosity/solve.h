@@ -129,8 +129,11 @@ struct SolveResult {
   double residual = 0.0;  ///< last change of radiosity, relative to its maximum
   int iterations = 0;
   double error_estimate = 0.0;  ///< RMS of the relative standard error of irradiance over the area
-  double mesh_error = 0.0;      ///< RMS of what interpolation of direct light misses, estimated
-  Certificate certificate;      ///< if SolveOptions::probes asked for one
+  /// RMS of what interpolation over the elements misses, estimated: direct light also within
+  /// elements, indirect light between them. Solver Rows; 0 if others solved.
+  double mesh_error = 0.0;
+  double mesh_target = 0.0;  ///< that elements were divided for: SolveOptions::mesh_error
+  Certificate certificate;  ///< if SolveOptions::probes asked for one
   MemoryUse memory;
   /// What SolveOptions::memory_limit made smaller, one line each: "1000 elements instead of 60000".
   std::vector<std::string> given_up;
@@ -162,12 +165,19 @@ struct Previous {
 /// was not interrupted (the chunk of samples, or the photons, that it was drawing are drawn again).
 /// A finished one takes the samples that a smaller SolveOptions::error needs.
 ///
-/// Of a scene where only diffuse reflectances differ (scene::hash_scene_but_reflectance): elements,
-/// direct light, caustics and, if they were kept, rows stay. Rows are traced again if that concerns
-/// patches that were shot (their light is in the rows).
+/// Of a scene where only diffuse reflectances differ (scene::SceneHashes): elements, direct light,
+/// caustics and, if they were kept, rows stay. Rows are traced again if that concerns patches that
+/// were shot (their light is in the rows).
 ///
-/// \throws Error  if the state is damaged or of another scene, another basis or other options than
-/// error, time_limit, tolerance, max_iterations and keep.
+/// Of a scene where lights, the environment or what surfaces emit differ: elements stay, and are
+/// divided further where the new light asks for it; light straight from the lights and caustics are
+/// sampled anew, rows stay or are traced again, and samples of inter-reflection stay where the rows
+/// know well enough what has changed for them, else they are drawn again. Interrupted before that
+/// is done, it leaves no state.
+///
+/// \throws Error  that says what differs, if the state is damaged or of other geometry or other
+/// materials, another basis or other options than error, time_limit, tolerance, max_iterations and
+/// keep.
 [[nodiscard]] SolveResult solve(const scene::RayQuery& query, const material::SpectralBasis& basis,
                                 const SolveOptions& options, const scene::Control& control,
                                 const Previous& previous);

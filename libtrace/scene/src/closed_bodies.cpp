@@ -14,6 +14,7 @@
 
 #include "adjacency.h"
 #include "material/error.h"
+#include "scene/edge_parts.h"
 
 namespace atrium::scene {
 namespace {
@@ -69,19 +70,54 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-/// Triangles of each closed part of a mesh; parts hang together across edges of any kind.
-std::vector<std::vector<std::uint32_t>> closed_parts(const Mesh& mesh) {
-  const Adjacency edges = find_adjacency(mesh.triangles, weld_positions(mesh.positions));
-  std::vector<std::uint32_t> parent(mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0U);
+/// Which triangles hang together, and where a boundary is left: at edges of an odd number of uses.
+/// Where longer and shorter edges lie on each other (T-junctions) their parts are counted.
+struct Connected {
+  std::vector<std::uint32_t> parent;  ///< by triangle, see root_of()
+  std::vector<std::uint32_t> open;    ///< triangles at a boundary
+};
+
+Connected connect(const Mesh& mesh) {
+  const Weld weld = weld_positions(mesh.positions);
+  const Adjacency edges = find_adjacency(mesh.triangles, weld);
+  Connected c;
+  c.parent.resize(mesh.triangles.size());
+  std::iota(c.parent.begin(), c.parent.end(), 0U);
+  std::vector<OpenEdge> odd;
+  std::vector<std::uint32_t> triangle;  // of the odd edges
   edges.for_each_edge([&](const Adjacency::EdgeUse* first, const Adjacency::EdgeUse* last) {
     for (const auto* use = first + 1; use < last; ++use)
-      parent[root_of(parent, use->slot / 3)] = root_of(parent, first->slot / 3);
+      c.parent[root_of(c.parent, use->slot / 3)] = root_of(c.parent, first->slot / 3);
+    if ((last - first) % 2 == 0) return;
+    const Triangle& t = mesh.triangles[first->slot / 3];
+    const std::uint32_t v = t[first->slot % 3], w = t[(first->slot % 3 + 1) % 3];
+    odd.push_back({mesh.positions[v].cast<double>(), mesh.positions[w].cast<double>(), weld.id[v],
+                   weld.id[w]});
+    triangle.push_back(first->slot / 3);
   });
+  auto parts = divide_edges(odd);
+  if (!parts) {
+    c.open = std::move(triangle);
+    return c;
+  }
+  const auto ends = [](const EdgePart& p) { return std::minmax(p.id_a, p.id_b); };
+  std::stable_sort(parts->begin(), parts->end(),
+                   [&](const EdgePart& x, const EdgePart& y) { return ends(x) < ends(y); });
+  for (std::size_t i = 0, j = 0; i < parts->size(); i = j) {
+    for (j = i; j < parts->size() && ends((*parts)[j]) == ends((*parts)[i]); ++j)
+      c.parent[root_of(c.parent, triangle[(*parts)[j].edge])] =
+          root_of(c.parent, triangle[(*parts)[i].edge]);
+    if ((j - i) % 2 != 0) c.open.push_back(triangle[(*parts)[i].edge]);
+  }
+  return c;
+}
+
+/// Triangles of each closed part of a mesh; parts hang together across edges of any kind.
+std::vector<std::vector<std::uint32_t>> closed_parts(const Mesh& mesh) {
+  Connected connected = connect(mesh);
+  std::vector<std::uint32_t>& parent = connected.parent;
   std::vector<bool> open(parent.size(), false);
-  edges.for_each_edge([&](const Adjacency::EdgeUse* first, const Adjacency::EdgeUse* last) {
-    if ((last - first) % 2 != 0) open[root_of(parent, first->slot / 3)] = true;
-  });
+  for (const std::uint32_t t : connected.open) open[root_of(parent, t)] = true;
   std::vector<std::uint32_t> part_of(parent.size(), Adjacency::kNone);
   std::vector<std::vector<std::uint32_t>> parts;
   for (std::uint32_t t = 0; t < parent.size(); ++t) {

@@ -58,7 +58,8 @@ bool is_black(const material::SpectralValue& value) {
       value);
 }
 
-void add(Hash64& h, const material::Material& m, bool reflectance) {
+/// All but what `add_reflectance` and `add_emission` take.
+void add(Hash64& h, const material::Material& m) {
   h.value(m.medium);
   h.value(m.combination);
   h.value(m.sigma.has_value());
@@ -67,19 +68,29 @@ void add(Hash64& h, const material::Material& m, bool reflectance) {
        {m.c, m.k_df, m.k_rg, m.k_tp_df, m.k_tp_rg, m.pane_thickness, m.ray_c1, m.ray_c2}) {
     h.value(v);
   }
-  for (const auto* v : {&m.n, &m.kappa, &m.transmission_tint, &m.extinction, &m.emission})
-    add(h, *v);
-  if (reflectance || !only_reflects(m))
-    add(h, m.body_reflectance);
-  else
+  for (const auto* v : {&m.n, &m.kappa, &m.transmission_tint, &m.extinction}) add(h, *v);
+  if (only_reflects(m))
     h.value(m.body_reflectance ? 1 + is_black(*m.body_reflectance) : 0);
+  else
+    add(h, m.body_reflectance);
   add(h, m.body_transmittance);
   for (const auto* slot : {&m.roughness_texture, &m.body_texture, &m.reflectance_texture,
-                           &m.emission_texture, &m.normal_texture, &m.alpha_texture}) {
+                           &m.normal_texture, &m.alpha_texture}) {
     add(h, *slot);
   }
   for (const float v : {m.normal_scale, m.alpha_cutoff, m.alpha_factor}) h.value(v);
-  for (const bool v : {m.emission_spectral_watts, m.emits_both_sides, m.one_sided}) h.value(v);
+  h.value(m.one_sided);
+}
+
+void add_reflectance(Hash64& h, const material::Material& m) {
+  if (only_reflects(m)) add(h, m.body_reflectance);
+}
+
+void add_emission(Hash64& h, const material::Material& m) {
+  add(h, m.emission);
+  add(h, m.emission_texture);
+  h.value(m.emission_spectral_watts);
+  h.value(m.emits_both_sides);
 }
 
 void add(Hash64& h, const material::Texture& t) {
@@ -149,7 +160,7 @@ void add(Hash64& h, const Mesh& mesh) {
   h.array(mesh.triangles);
 }
 
-std::uint64_t hash(const Scene& scene, bool reflectance) {
+std::uint64_t hash_geometry(const Scene& scene) {
   Hash64 h;
   for (const Mesh& mesh : scene.meshes) add(h, mesh);
   for (const Object& o : scene.objects) {
@@ -159,27 +170,60 @@ std::uint64_t hash(const Scene& scene, bool reflectance) {
     h.value(o.instanced);
     add_vector(h, o.to_scene.matrix());
   }
-  for (const material::Material& m : scene.materials) add(h, m, reflectance);
+  return h.result();
+}
+
+std::uint64_t hash_materials(const Scene& scene) {
+  Hash64 h;
+  for (const material::Material& m : scene.materials) add(h, m);
   for (const material::Texture& t : scene.textures) add(h, t);
+  add(h, scene.medium_extinction);
+  h.value(scene.unit);
+  return h.result();
+}
+
+std::uint64_t hash_reflectance(const Scene& scene) {
+  Hash64 h;
+  for (const material::Material& m : scene.materials) add_reflectance(h, m);
+  return h.result();
+}
+
+std::uint64_t hash_lights(const Scene& scene) {
+  Hash64 h;
   for (const Light& light : scene.lights) {
     h.word(light.kind.index());
     std::visit(AddLight{h}, light.kind);
     add_vector(h, light.to_scene.matrix());
   }
+  return h.result();
+}
+
+std::uint64_t hash_emission(const Scene& scene) {
+  Hash64 h;
+  for (const material::Material& m : scene.materials) add_emission(h, m);
   if (scene.environment) {
     add(h, scene.environment->radiance);
     h.word(scene.environment->pattern.index());
     std::visit(AddSky{h}, scene.environment->pattern);
     add_vector(h, scene.environment->to_scene.matrix());
   }
-  add(h, scene.medium_extinction);
-  h.value(scene.unit);
   return h.result();
 }
 
 }  // namespace
 
-std::uint64_t hash_scene(const Scene& scene) { return hash(scene, true); }
-std::uint64_t hash_scene_but_reflectance(const Scene& scene) { return hash(scene, false); }
+SceneHashes hash_parts(const Scene& scene) {
+  return {hash_geometry(scene), hash_materials(scene), hash_reflectance(scene), hash_lights(scene),
+          hash_emission(scene)};
+}
+
+std::uint64_t hash_scene(const Scene& scene) {
+  const SceneHashes parts = hash_parts(scene);
+  Hash64 h;
+  for (const std::uint64_t part :
+       {parts.geometry, parts.materials, parts.reflectance, parts.lights, parts.emission})
+    h.word(part);
+  return h.result();
+}
 
 }  // namespace atrium::scene

@@ -3,32 +3,13 @@
 #include <unordered_map>
 
 #include "adjacency.h"
+#include "scene/edge_parts.h"
 
 namespace atrium::scene {
 namespace {
 
 constexpr std::size_t kMostEdges = 100'000;
 constexpr int kMostSteps = 2'000;  // cells along one edge
-
-struct Segment {
-  Vec3d a, b;
-  std::uint32_t id_a, id_b;
-};
-
-std::vector<Segment> boundary(const std::vector<Vec3f>& positions,
-                              const std::vector<Triangle>& triangles, const Weld& weld,
-                              const Adjacency& adjacency) {
-  std::vector<Segment> out;
-  adjacency.for_each_edge([&](const Adjacency::EdgeUse* first, const Adjacency::EdgeUse* last) {
-    if (last - first != 1) return;
-    const Triangle& t = triangles[first->slot / 3];
-    const std::uint32_t a = t[first->slot % 3];
-    const std::uint32_t b = t[(first->slot % 3 + 1) % 3];
-    out.push_back(
-        {positions[a].cast<double>(), positions[b].cast<double>(), weld.id[a], weld.id[b]});
-  });
-  return out;
-}
 
 /// Boundary vertices in the cells of a grid.
 class Grid {
@@ -60,41 +41,80 @@ class Grid {
   std::unordered_map<std::uint64_t, std::vector<std::pair<std::uint32_t, Vec3d>>> cells_;
 };
 
-/// Is p inside the segment, well away from its ends, and on it to 1e-5 of its length?
-bool lies_within(const Segment& s, const Vec3d& p) {
+/// Where p lies along the segment, if it lies on it and off its ends.
+std::optional<double> place_within(const OpenEdge& s, const Vec3d& p) {
+  constexpr double kOn = 1e-5;
   const Vec3d d = s.b - s.a;
   const double t = (p - s.a).dot(d) / d.squaredNorm();
-  if (!(t > 1e-3 && t < 1.0 - 1e-3)) return false;
-  return (s.a + t * d - p).norm() <= 1e-5 * d.norm();
+  if (!(t > kOn && t < 1.0 - kOn)) return std::nullopt;
+  if (!((s.a + t * d - p).norm() <= kOn * d.norm())) return std::nullopt;
+  return t;
+}
+
+/// Places that lie on an edge, along it.
+std::vector<std::pair<double, std::uint32_t>> places_on(const OpenEdge& s, const Grid& grid) {
+  std::vector<std::pair<double, std::uint32_t>> on;
+  const int steps = std::min(kMostSteps, 1 + static_cast<int>((s.b - s.a).norm() / grid.cell()));
+  for (int i = 0; i <= steps; ++i)
+    grid.near(s.a + (s.b - s.a) * (static_cast<double>(i) / steps),
+              [&](std::uint32_t id, const Vec3d& q) {
+                if (id == s.id_a || id == s.id_b) return;
+                if (const auto t = place_within(s, q)) on.emplace_back(*t, id);
+              });
+  std::sort(on.begin(), on.end());
+  on.erase(std::unique(on.begin(), on.end()), on.end());
+  return on;
 }
 
 }  // namespace
 
+std::optional<std::vector<EdgePart>> divide_edges(std::span<const OpenEdge> edges) {
+  std::vector<EdgePart> parts;
+  if (edges.empty()) return parts;
+  if (edges.size() > kMostEdges) return std::nullopt;
+  double length = 0.0;
+  std::uint32_t ids = 0;
+  for (const OpenEdge& s : edges) {
+    length += (s.b - s.a).norm();
+    ids = std::max({ids, s.id_a + 1, s.id_b + 1});
+  }
+  if (!(length > 0.0)) return std::nullopt;
+  Grid grid(length / static_cast<double>(edges.size()));
+  std::vector<bool> added(ids, false);
+  for (const OpenEdge& s : edges) {
+    if (!added[s.id_a]) grid.add(s.id_a, s.a);
+    added[s.id_a] = true;
+    if (!added[s.id_b]) grid.add(s.id_b, s.b);
+    added[s.id_b] = true;
+  }
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    std::uint32_t from = edges[e].id_a;
+    for (const auto& [t, id] : places_on(edges[e], grid)) {
+      parts.push_back({e, from, id});
+      from = id;
+    }
+    parts.push_back({e, from, edges[e].id_b});
+  }
+  return parts;
+}
+
 std::optional<std::uint64_t> count_t_junctions(const std::vector<Vec3f>& positions,
                                                const std::vector<Triangle>& triangles,
                                                const Weld& weld, const Adjacency& adjacency) {
-  const std::vector<Segment> edges = boundary(positions, triangles, weld, adjacency);
-  if (edges.empty()) return 0;
-  if (edges.size() > kMostEdges) return std::nullopt;
-  double length = 0.0;
-  for (const Segment& s : edges) length += (s.b - s.a).norm();
-  Grid grid(length / static_cast<double>(edges.size()));
-  std::vector<bool> added(weld.count, false);
-  for (const Segment& s : edges) {
-    if (!added[s.id_a]) grid.add(s.id_a, s.a);
-    if (!added[s.id_b]) grid.add(s.id_b, s.b);
-    added[s.id_a] = added[s.id_b] = true;
-  }
+  std::vector<OpenEdge> edges;
+  adjacency.for_each_edge([&](const Adjacency::EdgeUse* first, const Adjacency::EdgeUse* last) {
+    if (last - first != 1) return;
+    const Triangle& t = triangles[first->slot / 3];
+    const std::uint32_t a = t[first->slot % 3];
+    const std::uint32_t b = t[(first->slot % 3 + 1) % 3];
+    edges.push_back(
+        {positions[a].cast<double>(), positions[b].cast<double>(), weld.id[a], weld.id[b]});
+  });
+  const auto parts = divide_edges(edges);
+  if (!parts) return std::nullopt;
   std::vector<bool> found(weld.count, false);
-  for (const Segment& s : edges) {
-    const int steps = std::min(kMostSteps, 1 + static_cast<int>((s.b - s.a).norm() / grid.cell()));
-    for (int i = 0; i <= steps; ++i) {
-      const Vec3d p = s.a + (s.b - s.a) * (static_cast<double>(i) / steps);
-      grid.near(p, [&](std::uint32_t id, const Vec3d& q) {
-        if (id != s.id_a && id != s.id_b && !found[id] && lies_within(s, q)) found[id] = true;
-      });
-    }
-  }
+  for (const EdgePart& p : *parts)
+    if (p.id_b != edges[p.edge].id_b) found[p.id_b] = true;
   return static_cast<std::uint64_t>(std::count(found.begin(), found.end(), true));
 }
 

@@ -27,6 +27,33 @@ TEST(Elements, RectangleIsCutIntoWholeCells) {
   expect_lookup_agrees(scene, e);
 }
 
+// One long edge against three short ones: within a plane that is a matter of triangulation, across
+// a bend it stays a border.
+TEST(Elements, FacetsGrowOverTJunctionsWithinAPlane) {
+  for (const float rise : {0.0f, 0.05f}) {
+    SCOPED_TRACE(rise);
+    SceneMaker maker;
+    maker.object(
+        maker.material(test::diffuse(0.5)),
+        {{0, 0, 0},
+         {3, 0, 0},
+         {3, 1, 0},
+         {0, 1, 0},
+         {1, 1, 0},
+         {2, 1, 0},
+         {0, 2, rise},
+         {1, 2, rise},
+         {2, 2, rise},
+         {3, 2, rise}},
+        {{0, 1, 2}, {0, 2, 3}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}, {5, 2, 9}, {5, 9, 8}});
+    const Scene scene = maker.take();
+    const Elements e = make_elements(scene, {.element_size = 0.5});
+    EXPECT_EQ(e.layout.facets.size(), rise == 0.0f ? 1U : 2U);
+    if (rise == 0.0f) EXPECT_EQ(e.layout.element_count(), 24U);
+    expect_lookup_agrees(scene, e);
+  }
+}
+
 TEST(Elements, TriangulationDoesNotMatter) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> inside(0.5f, 2.5f);

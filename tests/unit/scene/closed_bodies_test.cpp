@@ -50,6 +50,27 @@ TEST(ClosedBodies, FindsThemWhateverTheWinding) {
   EXPECT_EQ(inside(bodies, {-1e-6f, 1, 1}), Inside());
 }
 
+// The top is divided in the middle, the sides below it are not.
+TEST(ClosedBodies, TJunctionsCloseBodiesPartByPart) {
+  std::vector<Vec3f> p = corners({0, 0, 0}, {2, 2, 2});
+  p.insert(p.end(), {{1, 0, 2}, {1, 2, 2}});
+  std::vector<Triangle> t = kBox;
+  t.erase(t.begin() + 2, t.begin() + 4);
+  t.insert(t.end(), {{4, 8, 9}, {4, 9, 6}, {8, 5, 7}, {8, 7, 9}});
+  for (const bool open : {false, true}) {
+    if (open) t.pop_back();
+    test::SceneMaker maker;
+    maker.object(maker.material(test::diffuse(0.5)), p, t);
+    const Scene scene = maker.take();
+    const ClosedBodies bodies(scene);
+    ASSERT_EQ(bodies.bodies().size(), open ? 0U : 1U);
+    if (open) continue;
+    EXPECT_NEAR(bodies.bodies()[0].volume, 8.0, 1e-5);
+    EXPECT_EQ(inside(bodies, {0.7f, 1.1f, 0.9f}), Inside{0});
+    EXPECT_EQ(inside(bodies, {0.7f, 1.1f, 2.1f}), Inside{});
+  }
+}
+
 TEST(ClosedBodies, OpenOrTransparentOnesAreNone) {
   test::SceneMaker maker;
   const MaterialId wall = maker.material(test::diffuse(0.5));

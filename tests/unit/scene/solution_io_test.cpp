@@ -168,21 +168,40 @@ TEST(HashScene, SeesGeometryMaterialsAndLights) {
   EXPECT_EQ(skies.size(), 5u);
   EXPECT_TRUE(changed([](Scene& s) { s.medium_extinction = 0.1; }));
   EXPECT_FALSE(changed([](Scene& s) { s.meshes[0].name = "renamed"; }));
+}
 
-  using atrium::scene::hash_scene_but_reflectance;
+TEST(HashParts, SayWhatDiffers) {
+  Scene scene;
+  scene.materials.resize(1);
   scene.materials[0].medium = atrium::material::Material::Medium::Opaque;
   scene.materials[0].k_df = 1.0;
   scene.materials[0].k_rg = 0.0;
   scene.materials[0].body_reflectance = 0.5;
-  Scene other = scene;
-  other.materials[0].body_reflectance = 0.4;
-  EXPECT_NE(hash_scene(other), hash_scene(scene));
-  EXPECT_EQ(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
-  other.materials[0].body_reflectance = 0.0;  // then there is no diffuse surface any more
-  EXPECT_NE(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
-  other = scene;
-  other.materials[0].emission = 1.0;
-  EXPECT_NE(hash_scene_but_reflectance(other), hash_scene_but_reflectance(scene));
+  scene.lights.resize(1);
+  const atrium::scene::SceneHashes base = atrium::scene::hash_parts(scene);
+  const auto changed = [&](auto&& change) {
+    Scene other = scene;
+    change(other);
+    EXPECT_NE(hash_scene(other), hash_scene(scene));
+    const atrium::scene::SceneHashes h = atrium::scene::hash_parts(other);
+    std::string parts;
+    if (h.geometry != base.geometry) parts += "g";
+    if (h.materials != base.materials) parts += "m";
+    if (h.reflectance != base.reflectance) parts += "r";
+    if (h.lights != base.lights) parts += "l";
+    if (h.emission != base.emission) parts += "e";
+    return parts;
+  };
+  EXPECT_EQ(changed([](Scene& s) { s.materials[0].body_reflectance = 0.4; }), "r");
+  // Then there is no diffuse surface any more.
+  EXPECT_EQ(changed([](Scene& s) { s.materials[0].body_reflectance = 0.0; }), "mr");
+  EXPECT_EQ(changed([](Scene& s) { s.materials[0].emission = 1.0; }), "e");
+  EXPECT_EQ(changed([](Scene& s) { s.materials[0].one_sided = true; }), "m");
+  EXPECT_EQ(changed([](Scene& s) { s.lights[0].to_scene.translation().x() += 1.0; }), "l");
+  EXPECT_EQ(changed([](Scene& s) { s.lights.clear(); }), "l");
+  EXPECT_EQ(changed([](Scene& s) { s.environment.emplace(); }), "e");
+  EXPECT_EQ(changed([](Scene& s) { s.medium_extinction = 0.1; }), "m");
+  EXPECT_EQ(changed([](Scene& s) { s.objects.emplace_back(); }), "g");
 }
 
 }  // namespace

@@ -10,9 +10,10 @@
 namespace atrium::scene {
 
 /// The closed opaque bodies of a scene (connected, every edge shared by an even number of
-/// triangles) and which of them a point is in. Light never gets from one set of bodies into
-/// another, so this says where no light can come from. Decided by crossings of rays with each body
-/// alone: neither winding nor normals matter, and bodies may overlap. Thread-safe.
+/// triangles, at T-junctions part by part) and which of them a point is in. Light never gets from
+/// one set of bodies into another, so this says where no light can come from. Decided by crossings
+/// of rays with each body alone: neither winding nor normals matter, and bodies may overlap.
+/// Thread-safe.
 class ClosedBodies {
  public:
   explicit ClosedBodies(const Scene& scene);

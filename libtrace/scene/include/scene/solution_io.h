@@ -28,9 +28,18 @@ void dim(Solution& solution, const std::vector<std::pair<std::string, double>>& 
 /// 64-bit hash of everything in a scene that light depends on: geometry, placement, materials,
 /// textures, lights, environment, unit. Names, cameras and the load report do not count.
 [[nodiscard]] std::uint64_t hash_scene(const Scene& scene);
-/// The same without what diffuse reflection alone depends on: the value of the body's reflectance
-/// of opaque materials whose parts are not coupled. That there is some, counts.
-[[nodiscard]] std::uint64_t hash_scene_but_reflectance(const Scene& scene);
+/// The same in parts, so that a solution can go on where one of them has changed.
+struct SceneHashes {
+  std::uint64_t geometry = 0;   ///< meshes, and where which of them stands
+  std::uint64_t materials = 0;  ///< materials but for the parts below, textures, air, unit
+  /// What diffuse reflection alone depends on: the value of the body's reflectance of opaque
+  /// materials whose parts are not coupled. That there is some, counts as `materials`.
+  std::uint64_t reflectance = 0;
+  std::uint64_t lights = 0;    ///< Scene::lights
+  std::uint64_t emission = 0;  ///< environment, what surfaces emit
+  bool operator==(const SceneHashes&) const = default;
+};
+[[nodiscard]] SceneHashes hash_parts(const Scene& scene);
 
 /// Binary, complete or absent, with a checksum. \throws Error (folder), RuntimeFailure (writing).
 void write_solution(const Solution& solution, const std::filesystem::path& file);
