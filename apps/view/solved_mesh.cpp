@@ -10,8 +10,7 @@ Mesh mesh_of(const LoadedScene& loaded, const radiosity::Elements& elements,
              const scene::SurfaceField& field, std::span<const scene::GroupField> groups) {
   if (groups.size() < 2) groups = {};
   Mesh mesh = make_mesh(
-      radiosity::to_polygon_mesh(*loaded.scene, elements, field, loaded.basis, groups),
-      "solution");
+      radiosity::to_polygon_mesh(*loaded.scene, elements, field, loaded.basis, groups), "solution");
   for (const material::Material& m : loaded.scene->materials) mesh.materials.push_back(m.name);
   for (const scene::Object& o : loaded.scene->objects) mesh.objects.push_back(o.name);
   return mesh;

@@ -25,8 +25,8 @@ std::vector<Item> items_of(const Problem<N>& problem) {
   return items;
 }
 
-/// The dimension in which the items differ most. Normals count by the size of the place: those of
-/// a whole room part first, those of a crumpled cloth do not matter from afar.
+/// The dimension in which the items differ most. Normals count by the size of the place: walls at a
+/// right angle part before places do, a bent surface is parted by place.
 std::size_t widest(std::span<const Item> items) {
   std::array<float, 6> low = items.front().at;
   std::array<float, 6> high = low;
@@ -38,8 +38,28 @@ std::size_t widest(std::span<const Item> items) {
   std::array<float, 6> extent;
   for (std::size_t d = 0; d < 6; ++d) extent[d] = high[d] - low[d];
   const float size = std::max({extent[0], extent[1], extent[2]});
-  for (std::size_t d = 3; d < 6; ++d) extent[d] *= 0.5f * size;
+  for (std::size_t d = 3; d < 6; ++d) extent[d] *= 1.5f * size;
   return static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
+}
+
+/// Puts the items that lie on one side first. \return  how many; neither none nor all.
+std::size_t split(std::span<Item> items) {
+  const std::size_t d = widest(items);
+  const auto less = [d](const Item& a, const Item& b) {
+    return a.at[d] != b.at[d] ? a.at[d] < b.at[d] : a.side < b.side;
+  };
+  if (d >= 3) {
+    // In the middle between the normals: a median would cut through those of one wall.
+    const auto [low, high] = std::minmax_element(items.begin(), items.end(), less);
+    const float middle = 0.5f * (low->at[d] + high->at[d]);
+    const auto end =
+        std::partition(items.begin(), items.end(), [&](const Item& i) { return i.at[d] < middle; });
+    const auto count = static_cast<std::size_t>(end - items.begin());
+    if (count > 0 && count < items.size()) return count;
+  }
+  const auto half = static_cast<std::ptrdiff_t>(items.size() / 2);
+  std::nth_element(items.begin(), items.begin() + half, items.end(), less);
+  return static_cast<std::size_t>(half);
 }
 
 }  // namespace
@@ -59,12 +79,7 @@ Regions::Regions(const Problem<N>& problem) {
       first_.push_back(static_cast<std::uint32_t>(order_.size()));
       continue;
     }
-    const std::size_t d = widest(range);
-    const auto half = static_cast<std::ptrdiff_t>(range.size() / 2);
-    std::nth_element(range.begin(), range.begin() + half, range.end(),
-                     [d](const Item& a, const Item& b) {
-                       return a.at[d] != b.at[d] ? a.at[d] < b.at[d] : a.side < b.side;
-                     });
+    const auto half = static_cast<std::ptrdiff_t>(split(range));
     todo.push_back(range.subspan(static_cast<std::size_t>(half)));
     todo.push_back(range.first(static_cast<std::size_t>(half)));
   }

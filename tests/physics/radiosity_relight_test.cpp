@@ -127,12 +127,12 @@ Difference compare(const SolveResult& a, const SolveResult& b) {
 }
 
 /// Goes on from one set of lights to another and compares with solves from the beginning.
-/// \param share  of the rays of a solve from the beginning that may be needed.
+/// \param share  of the rays of a solve from the beginning that may be needed, mean of the seeds.
 void expect_relights(scene::Scene before, scene::Scene after, const SolveOptions& o, double share) {
   const Bench was(std::move(before));
   const Bench is(std::move(after));
   std::vector<Difference> relit, afresh;
-  double most = 0.0;
+  double needed = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SolveOptions own = o;
     own.seed = seed;
@@ -142,7 +142,7 @@ void expect_relights(scene::Scene before, scene::Scene after, const SolveOptions
     const SolveResult independent = is.run(own);
     own.seed = seed + 200;
     const SolveResult another = is.run(own);
-    most = std::max(most, static_cast<double>(rays(rest)) / static_cast<double>(rays(independent)));
+    needed += 0.25 * static_cast<double>(rays(rest)) / static_cast<double>(rays(independent));
     if (o.error > 0.0)
       EXPECT_LE(rest.error_estimate, o.error);
     else
@@ -150,8 +150,8 @@ void expect_relights(scene::Scene before, scene::Scene after, const SolveOptions
     relit.push_back(compare(rest, independent));
     afresh.push_back(compare(another, independent));
   }
-  ::testing::Test::RecordProperty("rays", std::to_string(most));
-  EXPECT_LT(most, share);
+  ::testing::Test::RecordProperty("rays", std::to_string(needed));
+  EXPECT_LT(needed, share);
   // As far from an independent solution as another independent one is, side by side: 300 sides and
   // four seeds know the RMS to 4 %, their errors are correlated; a fifth more is far off. The flux
   // of one solution is off by no more than its stated error, a bound for correlated sides.

@@ -101,6 +101,52 @@ TEST(Rows, ManyRoundsStayWhereTheyWere) {
   }
 }
 
+// Two rooms with a slit of 3 cm between them, a lamp in the first: what the second one gets is
+// found by few samples. What these find says how many more a side gets; that must not change the
+// mean. The reference has 60 times the samples, in fixed numbers.
+TEST(Rows, RoundsDoNotFavourWhatSamplesWereLuckyToFind) {
+  const auto rooms = [] {
+    SceneMaker maker;
+    const auto white = maker.material(test::diffuse(0.5));
+    const auto lamp = maker.material(test::emitter(50.0, 0.5));
+    maker.room({0, 0, 0}, {4, 2, 2}, white);
+    maker.quad(white, {2, 0, 0}, {2, 1, 0}, {2, 1, 2}, {2, 0, 2});
+    maker.quad(white, {2, 1.03f, 0}, {2, 2, 0}, {2, 2, 2}, {2, 1.03f, 2});
+    maker.quad(lamp, {0.9f, 0.9f, 1.9f}, {0.9f, 1.1f, 1.9f}, {1.1f, 1.1f, 1.9f},
+               {1.1f, 0.9f, 1.9f});
+    return maker.take();
+  };
+  const auto second_room = [](const Solved& s) {
+    double sum = 0.0;
+    for (std::size_t e = 0; e < s.count(); ++e)
+      if (s.centre(e).x() > 2.01f) sum += s.area(e) * s.total(e);
+    return sum;
+  };
+  SolveOptions options{.element_size = 0.25, .max_level = 0};
+  SolveOptions many = options;
+  many.gather_rays = many.direct_samples = 4096;
+  const double reference = second_room(Solved(rooms(), many));
+  constexpr int kSeeds = 24;
+  double sum = 0.0;
+  double squares = 0.0;
+  options.error = 0.1;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    options.seed = static_cast<std::uint64_t>(100 + seed);
+    const Solved s(rooms(), options);
+    EXPECT_EQ(s.result.stopped_by, "error");
+    const double relative = second_room(s) / reference;
+    sum += relative;
+    squares += relative * relative;
+  }
+  const double mean = sum / kSeeds;
+  const double error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+  RecordProperty("mean", std::to_string(mean));
+  RecordProperty("error", std::to_string(error));
+  EXPECT_LT(error, 0.01);
+  // The reference's own noise is a twelfth of one seed's.
+  EXPECT_NEAR(mean, 1.0, 4 * error);
+}
+
 // The same room by three methods that share little: sampled rows, exact factors with a dense
 // solution, and shooting.
 TEST(Solvers, Agree) {

@@ -23,6 +23,7 @@ scene::Scene divided_room() {
 radiosity::SolveOptions options() {
   radiosity::SolveOptions o;
   o.max_elements = 1500;
+  o.mesh_error = 0.005;  // so that elements are divided
   o.light_groups = scene::Grouping::ByName;
   return o;
 }

@@ -1,0 +1,155 @@
+// What rounds of samples stand on: tallies, regions, bent rays, plans.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "error_control.h"
+#include "guide.h"
+#include "material/spectral_basis.h"
+#include "scene/ray_query.h"
+#include "tally.h"
+#include "unit/radiosity/box_scene.h"
+
+namespace {
+
+using namespace atrium;
+using namespace atrium::radiosity;
+
+/// A room of 0.25 m elements.
+struct Room {
+  Room() {
+    test::SceneMaker maker;
+    maker.room({0, 0, 0}, {3, 2, 2}, maker.material(test::diffuse(0.5)));
+    maker.point_light({1, 1, 1}, 1.0);
+    scene = maker.take();
+    query.emplace(scene);
+    shading.emplace(*query, material::SpectralBasis::grey());
+    elements = make_elements(scene, {.element_size = 0.25});
+    problem.emplace(*shading, elements, options);
+  }
+  scene::Scene scene;
+  std::optional<scene::RayQuery> query;
+  std::optional<scene::Shading<1>> shading;
+  SolveOptions options;
+  Elements elements;
+  std::optional<Problem<1>> problem;
+};
+
+SideSums<1> sums_of(std::array<float, kReplicates> values) {
+  SideSums<1> sums(1);
+  for (int r = 0; r < kReplicates; ++r) {
+    const Spectrum<1> v(values[static_cast<std::size_t>(r)]);
+    sums.add(0, r, v, v);
+    sums.end_sample();
+    sums.valid[static_cast<std::size_t>(r)] = 1;
+  }
+  return sums;
+}
+
+// Two rounds of means 3 and 7 with shares 0.75 and 0.25; variances of four values 1 2 4 5 and
+// 5 6 8 9 (squared deviations 10, over 3 * 4) join by the squares of their shares.
+TEST(Tally, JoinsRoundsByTheirShares) {
+  Tally<1> tally(1, 1, false);
+  tally.add(0, sums_of({1, 2, 4, 5}), 1);
+  EXPECT_FLOAT_EQ(tally.mean(0, 0)[0], 3.0f);
+  EXPECT_NEAR(tally.variance(0), 10.0 / 12.0, 1e-6);
+  tally.end_round(1.0);
+  EXPECT_FLOAT_EQ(tally.mean(0, 0)[0], 3.0f);
+  EXPECT_EQ(tally.drawn(0), 0u);
+  tally.add(0, sums_of({5, 6, 8, 9}), 1);
+  EXPECT_FLOAT_EQ(tally.mean(0, 0)[0], 3.0f) << "an unfinished round does not count";
+  tally.end_round(0.25);
+  EXPECT_FLOAT_EQ(tally.mean(0, 0)[0], 4.0f);
+  EXPECT_NEAR(tally.variance(0), (0.75 * 0.75 + 0.25 * 0.25) * 10.0 / 12.0, 1e-6);
+  EXPECT_EQ(tally.valid(0), 8u);
+  EXPECT_FLOAT_EQ(static_cast<float>(tally.last_mean(0)), 7.0f);
+}
+
+// A side that nothing was valid of keeps what it had.
+TEST(Tally, RoundsWithoutValidSamplesChangeNothing) {
+  Tally<1> tally(2, 1, false);
+  tally.add(0, sums_of({1, 2, 4, 5}), 1);
+  tally.end_round(1.0);
+  tally.add(1, sums_of({5, 6, 8, 9}), 1);
+  tally.end_round(0.5);
+  EXPECT_FLOAT_EQ(tally.mean(0, 0)[0], 3.0f);
+  EXPECT_FLOAT_EQ(tally.mean(1, 0)[0], 7.0f);
+}
+
+TEST(Regions, HoldEverySideOnceAndFaceAlike) {
+  const Room room;
+  const Regions regions(*room.problem);
+  int apart = 0;
+  std::vector<int> times(room.problem->side_count(), 0);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    ASSERT_LE(regions.members(r).size(), Regions::kMost);
+    const SideIndex first = regions.members(r).front();
+    const auto normal = [&](SideIndex i) {
+      return room.problem->points.ng(room.problem->points.spot(i / 2, 0.5f, 0.5f).fan);
+    };
+    for (const SideIndex i : regions.members(r)) {
+      ++times[i];
+      apart += normal(i).dot(normal(first)) < 0.9f ? 1 : 0;
+    }
+  }
+  // Walls of a room part before places do.
+  EXPECT_EQ(apart, 0);
+  for (const SideIndex i : room.problem->sides.active) EXPECT_EQ(times[i], 1);
+}
+
+// Integrals over the square by bent points: f = 1 + x + 2 y has the mean 2.5. A grid of 256 x 256
+// midpoints leaves less than 1e-3 at cells' borders.
+TEST(HemisphereGuide, DensityMakesUpForBentRays) {
+  HemisphereGuide::Levels levels;
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    levels[k] = static_cast<std::uint8_t>(1 + (k * 37) % 255);
+  const HemisphereGuide::Side side(&levels);
+  ASSERT_FALSE(side.uniform());
+  constexpr int kGrid = 256;
+  double sum = 0.0;
+  double ones = 0.0;
+  for (int i = 0; i < kGrid; ++i)
+    for (int j = 0; j < kGrid; ++j) {
+      float u = (static_cast<float>(i) + 0.5f) / kGrid;
+      float v = (static_cast<float>(j) + 0.5f) / kGrid;
+      const double density = static_cast<double>(side(u, v));
+      ASSERT_GT(density, 0.0);
+      ASSERT_TRUE(u >= 0.0f && u < 1.0f && v >= 0.0f && v < 1.0f);
+      sum += (1.0 + static_cast<double>(u) + 2.0 * static_cast<double>(v)) / density;
+      ones += 1.0 / density;
+    }
+  // Cells of the lowest level get less than one row of the grid: a tenth of a percent is what that
+  // leaves of a mean over 64 cells.
+  EXPECT_NEAR(ones / (kGrid * kGrid), 1.0, 0.05);
+  EXPECT_NEAR(sum / (kGrid * kGrid), 2.5, 0.125);
+}
+
+// One stratum of equal sides: n samples of variance 1 each make V = 1 / n; joined with V0 = 1 / n0
+// it is 1 / (n + n0).
+TEST(RoundEffort, BringsTheSumToWhatIsWanted) {
+  const Room room;
+  const Problem<1>& p = *room.problem;
+  const auto sides = static_cast<double>(p.sides.active.size());
+  Tally<1> tally(p.side_count(), 1, false);
+  std::vector<double> weights(p.side_count(), 0.0);
+  std::vector<double> variance(p.side_count(), 0.0);
+  for (const SideIndex i : p.sides.active) {
+    tally.add(i, sums_of({1, 2, 4, 5}), 1);
+    weights[i] = 1.0 / sides;
+    variance[i] = 1.0;
+  }
+  const std::vector<float> exposed(p.side_count(), 1.0f);
+  const Stratum<1> stratum{&tally, variance, 1.0};
+  const double effort = round_effort(p, weights, exposed, {stratum}, {1.0 / 4.0}, 1.0 / 24.0, 1e9);
+  // 20 more for each side.
+  const std::vector<Draw> plan = plan_round(p, weights, exposed, stratum, effort);
+  ASSERT_EQ(plan.size(), p.sides.active.size());
+  for (const Draw& d : plan) EXPECT_NEAR(d.more * kReplicates, 20.0, 4.0);
+  // No more than may be spent.
+  const double little =
+      round_effort(p, weights, exposed, {stratum}, {1.0 / 4.0}, 1.0 / 24.0, 8.0 * sides);
+  for (const Draw& d : plan_round(p, weights, exposed, stratum, little))
+    EXPECT_EQ(d.more * kReplicates, 8u);
+}
+
+}  // namespace
