@@ -10,6 +10,27 @@ constexpr double kOpinion = 32.0;
 /// Degrees of freedom that it counts beside a side's own replicates.
 constexpr double kPooled = 4.0;
 
+/// Values of sides that few samples were drawn for, nearer to their region's mean by that: what a
+/// side's samples all missed its region has seen. \param samples  by side.
+template <int N>
+std::vector<double> nearer_to_region(const Problem<N>& problem, const Regions& regions,
+                                     std::vector<double> values,
+                                     const std::vector<double>& samples) {
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    double area = 0.0;
+    double sum = 0.0;
+    for (const SideIndex i : regions.members(r)) {
+      const auto a = static_cast<double>(problem.area(i));
+      area += a;
+      sum += a * values[i];
+    }
+    if (!(area > 0.0)) continue;
+    for (const SideIndex i : regions.members(r))
+      values[i] = (samples[i] * values[i] + 4.0 * sum / area) / (samples[i] + 4.0);
+  }
+  return values;
+}
+
 }  // namespace
 
 template <int N>
@@ -66,25 +87,6 @@ std::vector<double> mean_variance(const Problem<N>& problem, const Regions& regi
                              ((kOwn + kPooled) * samples[m]);
   }
   return result;
-}
-
-template <int N>
-std::vector<double> nearer_to_region(const Problem<N>& problem, const Regions& regions,
-                                     std::vector<double> values,
-                                     const std::vector<double>& samples) {
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    double area = 0.0;
-    double sum = 0.0;
-    for (const SideIndex i : regions.members(r)) {
-      const auto a = static_cast<double>(problem.area(i));
-      area += a;
-      sum += a * values[i];
-    }
-    if (!(area > 0.0)) continue;
-    for (const SideIndex i : regions.members(r))
-      values[i] = (samples[i] * values[i] + 4.0 * sum / area) / (samples[i] + 4.0);
-  }
-  return values;
 }
 
 template <int N>
@@ -188,19 +190,17 @@ std::vector<Draw> plan_round(const Problem<N>& problem, const std::vector<double
   return plan;
 }
 
-#define ATRIUM_INSTANTIATE(N)                                                                     \
-  template std::vector<double> error_weights(const Problem<N>&, const std::vector<double>&,       \
-                                             const std::vector<float>&);                          \
-  template std::vector<double> mean_variance(const Problem<N>&, const Regions&, const Tally<N>&,  \
-                                             GroupChoice);                                        \
-  template std::vector<double> nearer_to_region(const Problem<N>&, const Regions&,                \
-                                                std::vector<double>, const std::vector<double>&); \
-  template std::vector<double> expected_variance(const Problem<N>&, const Regions&,               \
-                                                 const Tally<N>&, const std::vector<double>&);    \
-  template double round_effort(const Problem<N>&, const std::vector<double>&,                     \
-                               const std::vector<float>&, const std::vector<Stratum<N>>&,         \
-                               const std::vector<double>&, double, double);                       \
-  template std::vector<Draw> plan_round(const Problem<N>&, const std::vector<double>&,            \
+#define ATRIUM_INSTANTIATE(N)                                                                    \
+  template std::vector<double> error_weights(const Problem<N>&, const std::vector<double>&,      \
+                                             const std::vector<float>&);                         \
+  template std::vector<double> mean_variance(const Problem<N>&, const Regions&, const Tally<N>&, \
+                                             GroupChoice);                                       \
+  template std::vector<double> expected_variance(const Problem<N>&, const Regions&,              \
+                                                 const Tally<N>&, const std::vector<double>&);   \
+  template double round_effort(const Problem<N>&, const std::vector<double>&,                    \
+                               const std::vector<float>&, const std::vector<Stratum<N>>&,        \
+                               const std::vector<double>&, double, double);                      \
+  template std::vector<Draw> plan_round(const Problem<N>&, const std::vector<double>&,           \
                                         const std::vector<float>&, const Stratum<N>&, double);
 ATRIUM_INSTANTIATE(1)
 ATRIUM_INSTANTIATE(3)

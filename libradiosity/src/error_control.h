@@ -28,14 +28,6 @@ template <int N>
                                                 const Tally<N>& tally,
                                                 GroupChoice group = kAllGroups);
 
-/// Values of sides that few samples were drawn for, nearer to their region's mean by that: what a
-/// side's samples all missed its region has seen. \param samples  by side.
-template <int N>
-[[nodiscard]] std::vector<double> nearer_to_region(const Problem<N>& problem,
-                                                   const Regions& regions,
-                                                   std::vector<double> values,
-                                                   const std::vector<double>& samples);
-
 /// Variance of one further sample of each side, as far as the samples so far let expect: what low
 /// discrepancy leaves of the spread of a side's samples and, the more the fewer these are, of its
 /// region's. To that comes what all of them may have missed: of a region's n samples the next one

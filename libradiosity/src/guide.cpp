@@ -80,12 +80,6 @@ struct Target {
 
 constexpr std::size_t kMostTargets = 96;
 
-/// What a region sees, brightest first; the mean and the mean square over its rays.
-struct Sight {
-  std::vector<Target> targets;
-  double mean = 0.0, square = 0.0;
-};
-
 template <int N>
 void look(const Rows<N>& rows, std::size_t k, const std::vector<float>& radiosity, float factor,
           std::vector<Target>& out) {
