@@ -73,8 +73,7 @@ std::vector<double> mean_variance(const Problem<N>& problem, const Regions& regi
     double scale = 0.0;
     for (std::size_t m = 0; m < members.size(); ++m) {
       const SideIndex i = members[m];
-      for (std::size_t g = group.value_or(0); g < (group ? *group + 1 : tally.groups()); ++g)
-        value[m] += static_cast<double>(tally.mean(i, g).mean());
+      value[m] = total_of(tally, i, group);
       samples[m] = tally.valid(i);
       own[m] = (group ? tally.variance(i, *group) : tally.variance(i)) * samples[m];
       variance += own[m];
@@ -95,8 +94,7 @@ std::vector<double> expected_variance(const Problem<N>& problem, const Regions& 
   std::vector<double> mean(problem.side_count(), 0.0);
   std::vector<double> samples(problem.side_count(), 0.0);
   for (const SideIndex i : problem.sides.active) {
-    for (std::size_t g = 0; g < tally.groups(); ++g)
-      mean[i] += static_cast<double>(tally.mean(i, g).mean());
+    mean[i] = tally.total(i);
     samples[i] = tally.valid(i);
   }
   const std::vector<double> scale = nearer_to_region(problem, regions, std::move(mean), samples);

@@ -21,6 +21,12 @@ template <int N>
 using GroupChoice = std::optional<std::size_t>;
 inline constexpr GroupChoice kAllGroups = std::nullopt;
 
+/// Mean of one group or of the sum of all (lane mean).
+template <int N>
+[[nodiscard]] double total_of(const Tally<N>& tally, SideIndex i, GroupChoice group) {
+  return group ? static_cast<double>(tally.mean(i, *group).mean()) : tally.total(i);
+}
+
 /// Variance of each side's mean (lane mean, of all groups or one). The spread of a few replicates
 /// is unsteady, so it is put together with the relative variance of the region's sides.
 template <int N>

@@ -238,6 +238,12 @@ class Tally {
     const std::size_t at = group * sides_ + i;
     return round_ > 0 ? past_body_[at] : per_sample(body_[at], i);
   }
+  /// Mean of the sum of all groups (lane mean).
+  [[nodiscard]] double total(SideIndex i) const {
+    double sum = 0.0;
+    for (std::size_t g = 0; g < groups_; ++g) sum += static_cast<double>(mean(i, g).mean());
+    return sum;
+  }
   /// Mean (lane mean) of half of the replicates; 0 without samples.
   [[nodiscard]] float half_mean(SideIndex i, std::size_t group, bool second) const {
     const std::size_t at = group * sides_ + i;
@@ -266,8 +272,7 @@ class Tally {
   [[nodiscard]] double spread(SideIndex i) const {
     const double n = valid(i);
     if (n < 2.0) return 0.0;
-    double m = 0.0;
-    for (std::size_t g = 0; g < groups_; ++g) m += static_cast<double>(mean(i, g).mean());
+    const double m = total(i);
     return std::max(0.0, static_cast<double>(squares_[i]) / n - m * m) * n / (n - 1.0);
   }
 
