@@ -10,7 +10,7 @@ struct AdaptedMesh {
   Elements elements;
   double error = 0.0;  ///< RMS of interpolation against measurement over the area, estimated
   /// By element: the one of the start that it is or is part of. Empty: none was divided.
-  std::vector<std::uint32_t> parent;
+  std::vector<std::uint32_t> parent = {};
 };
 
 /// The mesh error that options ask for, or the default.

@@ -30,7 +30,7 @@ class SideLight {
     scene::Sampler sampler(replicate_seed(problem_.options.seed, purpose_, replicate, sequence_),
                            problem_.stream(i), index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
-    const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
+    const Vec3f normal = normal_of(i, p.ng);
     const float choice = sampler.next_1d();
     const Vec2f u = sampler.next_2d();
     if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return false;
@@ -48,7 +48,7 @@ class SideLight {
     scene::Sampler sampler(problem_.options.seed ^ (purpose_ << 32) ^ 0x91aceU, problem_.stream(i),
                            index);
     const scene::SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
-    const Vec3f normal = side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
+    const Vec3f normal = normal_of(i, p.ng);
     LightPlace result;
     if (mixed && is_buried(problem_, p, normal, sampler.next_2d(), counters)) return result;
     result.object = p.object;

@@ -74,9 +74,9 @@ class HotSampler {
     const scene::SurfacePoint from = problem_.points.sample(i / 2, sampler.next_2d());
     const SideIndex j = patch_for(i, sampler.next_2d());
     const scene::SurfacePoint to = problem_.points.sample(j / 2, sampler.next_2d());
-    const Vec3f normal = side_of(i) == scene::Side::Front ? from.ng : Vec3f(-from.ng);
+    const Vec3f normal = normal_of(i, from.ng);
     if (mixed && is_buried(problem_, from, normal, sampler.next_2d(), counters)) return false;
-    const Vec3f facing = side_of(j) == scene::Side::Front ? to.ng : Vec3f(-to.ng);
+    const Vec3f facing = normal_of(j, to.ng);
     const Vec3f d = to.position - from.position;
     if (!(d.squaredNorm() > 0.0f)) return true;
     const Vec3f wi = d.normalized();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "material/frame.h"
 
@@ -133,6 +134,63 @@ void blur(std::vector<double>& cells) {
   along(w, 1);
 }
 
+/// What rays of all sides of a region saw, and lane means over them.
+struct Seen {
+  std::vector<Target> brightest;
+  double mean = 0.0;    ///< of radiosity
+  double square = 0.0;  ///< of its square
+  double rest = 0.0;    ///< of that, what targets have that are not among the brightest
+};
+
+/// \param row_of  by side.
+template <int N>
+void look_from_all(std::span<const SideIndex> members, const Rows<N>& rows,
+                   const std::vector<std::uint32_t>& row_of, const std::vector<float>& radiosity,
+                   Seen& seen) {
+  seen.brightest.clear();
+  seen.mean = seen.square = 0.0;
+  for (const SideIndex i : members)
+    look(rows, row_of[i], radiosity, 1.0f / static_cast<float>(members.size()), seen.brightest);
+  for (const Target& t : seen.brightest) {
+    seen.mean += static_cast<double>(t.share * radiosity[t.side]);
+    seen.square += static_cast<double>(t.square);
+  }
+  merge(seen.brightest);
+  keep_brightest(seen.brightest);
+  double kept = 0.0;
+  for (const Target& t : seen.brightest) kept += static_cast<double>(t.square);
+  seen.rest = seen.square - kept;
+}
+
+/// Adds the targets' squares to the cells of the hemisphere over a side where they lie.
+template <int N>
+void project(const Problem<N>& problem, SideIndex i, const std::vector<Target>& targets,
+             std::vector<double>& cells) {
+  constexpr std::size_t w = HemisphereGuide::kWidth;
+  const auto cell = [](float x) { return static_cast<std::size_t>(x * static_cast<float>(w)); };
+  const ElementPoints::Spot from = problem.points.spot(i / 2, 0.5f, 0.5f);
+  const Frame frame(normal_of(i, problem.points.ng(from.fan)));
+  std::uint32_t number = 0;
+  for (const Target& t : targets) {
+    // Another point of the target each time: (number of the golden ratio, its square).
+    ++number;
+    const auto u = static_cast<float>(std::fmod(0.7548776662 * number, 1.0));
+    const auto v = static_cast<float>(std::fmod(0.5698402910 * number, 1.0));
+    const Vec3f d = problem.points.spot(t.side / 2, u, v).position - from.position;
+    const Vec3f local = frame.to_local(d);
+    if (!(local.z() > 0.0f)) continue;
+    const Vec2f at = square_of(local / d.norm());
+    cells[cell(at.y()) * w + cell(at.x())] += static_cast<double>(t.square);
+  }
+}
+
+/// Variance that a density leaves, as a share of what uniform numbers have: the square of the mean
+/// is no noise. \param moment  of to_density().
+double gain_of(const Seen& seen, double moment) {
+  const double variance = std::max(seen.square - seen.mean * seen.mean, 1e-3 * seen.square);
+  return 1.0 - (1.0 - moment) * seen.square / variance;
+}
+
 }  // namespace
 
 template <int N>
@@ -144,51 +202,20 @@ HemisphereGuide::HemisphereGuide(const Problem<N>& problem, const Regions& regio
     row_of[problem.sides.active[k]] = static_cast<std::uint32_t>(k);
 
   scene::parallel_for(regions.size(), 8, [&](std::size_t begin, std::size_t end) {
-    std::vector<Target> common, own;
+    Seen seen;
+    std::vector<Target> own;
     std::vector<double> cells;
     for (std::size_t r = begin; r < end; ++r) {
       const auto members = regions.members(r);
-      common.clear();
-      for (const SideIndex i : members)
-        look(rows, row_of[i], radiosity, 1.0f / static_cast<float>(members.size()), common);
-      double mean = 0.0;
-      double square = 0.0;
-      for (const Target& t : common) {
-        mean += static_cast<double>(t.share * radiosity[t.side]);
-        square += static_cast<double>(t.square);
-      }
-      merge(common);
-      keep_brightest(common);
-      double kept = 0.0;
-      for (const Target& t : common) kept += static_cast<double>(t.square);
+      look_from_all(members, rows, row_of, radiosity, seen);
       double gains = 0.0;
       for (const SideIndex i : members) {
-        own = common;
+        own = seen.brightest;
         look(rows, row_of[i], radiosity, 1.0f, own);
-        cells.assign(kWidth * kWidth, 2.0 * (square - kept) / (kWidth * kWidth));
-        const ElementPoints::Spot from = problem.points.spot(i / 2, 0.5f, 0.5f);
-        const float sign = side_of(i) == scene::Side::Front ? 1.0f : -1.0f;
-        const Frame frame(Vec3f(sign * problem.points.ng(from.fan)));
-        std::uint32_t number = 0;
-        for (const Target& t : own) {
-          // Another point of the target each time: (number of the golden ratio, its square).
-          ++number;
-          const auto u = static_cast<float>(std::fmod(0.7548776662 * number, 1.0));
-          const auto v = static_cast<float>(std::fmod(0.5698402910 * number, 1.0));
-          const Vec3f d = problem.points.spot(t.side / 2, u, v).position - from.position;
-          const Vec3f local = frame.to_local(d);
-          if (!(local.z() > 0.0f)) continue;
-          const Vec2f at = square_of(local / d.norm());
-          const auto cell = [](float x) {
-            return static_cast<std::size_t>(x * static_cast<float>(kWidth));
-          };
-          cells[cell(at.y()) * kWidth + cell(at.x())] += static_cast<double>(t.square);
-        }
+        cells.assign(kWidth * kWidth, 2.0 * seen.rest / (kWidth * kWidth));
+        project(problem, i, own, cells);
         blur(cells);
-        // Of the variance: the square of the mean is no noise.
-        const double moment = to_density(cells);
-        const double variance = std::max(square - mean * mean, 1e-3 * square);
-        const double gain = 1.0 - (1.0 - moment) * square / variance;
+        const double gain = gain_of(seen, to_density(cells));
         if (cells.empty() || !(gain < kWorthwhile)) {
           gains += 1.0;
           continue;

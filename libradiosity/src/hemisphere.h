@@ -28,14 +28,13 @@ class HemisphereRays {
     if (!towards.uniform())
       for (std::size_t k = 0; k < size(); ++k) weight_[k] = 1.0f / towards(u[2][k], u[3][k]);
     const ElementPoints& points = problem.points;
-    const float sign = side_of(side) == scene::Side::Front ? 1.0f : -1.0f;
     std::uint32_t fan = 0xffffffffU;
     Frame frame(Vec3f::UnitZ());
     for (std::size_t k = 0; k < size(); ++k) {
       const ElementPoints::Spot spot = points.spot(side / 2, u[0][k], u[1][k]);
       if (spot.fan != fan) {
         fan = spot.fan;
-        frame = Frame(sign * points.ng(fan));
+        frame = Frame(normal_of(side, points.ng(fan)));
       }
       const Vec3f local = sample_cosine_hemisphere({u[2][k], u[3][k]});
       rays_[k].direction = frame.to_world(local);

@@ -1,24 +1,28 @@
 #pragma once
 
+#include <variant>
+
 #include "material/error.h"
 #include "scene/light.h"
 
 namespace atrium::radiosity {
 
+/// Which alternative a variant holds; one that is not known reads as the first.
+template <class Archive, class... T>
+void archive_alternative(Archive& a, std::variant<T...>& value) {
+  auto kind = static_cast<std::uint32_t>(value.index());
+  a(kind);
+  if (kind == value.index()) return;
+  value = std::variant<T...>();
+  std::uint32_t n = 0;
+  ((n++ == kind ? void(value = T()) : void()), ...);
+}
+
 /// Lights for both directions of an archive (scene/archive.h), as far as their light goes: without
 /// names and groups.
 template <class Archive>
-void archive_spectrum(Archive& a, material::SpectralValue& value) {
-  auto kind = static_cast<std::uint32_t>(value.index());
-  a(kind);
-  if (kind != value.index()) {
-    if (kind == 1)
-      value = Rgb();
-    else if (kind == 2)
-      value = material::SampledSpectrum();
-    else
-      value = 0.0;
-  }
+void archive_value(Archive& a, material::SpectralValue& value) {
+  archive_alternative(a, value);
   if (auto* number = std::get_if<double>(&value)) {
     a(*number);
   } else if (auto* rgb = std::get_if<Rgb>(&value)) {
@@ -33,52 +37,35 @@ void archive_spectrum(Archive& a, material::SpectralValue& value) {
     a(samples.value);
   }
 }
+template <class Archive, class T>
+void archive_value(Archive& a, T& value) {
+  a(value);
+}
+template <class Archive, class... T>
+void archive_values(Archive& a, T&... values) {
+  (archive_value(a, values), ...);
+}
 
 template <class Archive>
 void archive_kind(Archive& a, scene::PointLight& l) {
-  archive_spectrum(a, l.intensity);
-  a(l.falloff);
+  archive_values(a, l.intensity, l.falloff);
 }
 template <class Archive>
 void archive_kind(Archive& a, scene::SpotLight& l) {
-  archive_spectrum(a, l.intensity);
-  a(l.inner_angle);
-  a(l.outer_angle);
-  a(l.falloff);
+  archive_values(a, l.intensity, l.inner_angle, l.outer_angle, l.falloff);
 }
 template <class Archive>
 void archive_kind(Archive& a, scene::DirectionalLight& l) {
-  archive_spectrum(a, l.irradiance);
-  a(l.angular_radius);
+  archive_values(a, l.irradiance, l.angular_radius);
 }
 template <class Archive>
 void archive_kind(Archive& a, scene::ProfileLight& l) {
-  a(l.profile.theta_deg);
-  a(l.profile.phi_deg);
-  a(l.profile.candela);
-  archive_spectrum(a, l.scale);
-  a(l.falloff);
+  archive_values(a, l.profile.theta_deg, l.profile.phi_deg, l.profile.candela, l.scale, l.falloff);
 }
 
 template <class Archive>
 void archive_light(Archive& a, scene::Light& light) {
-  auto kind = static_cast<std::uint32_t>(light.kind.index());
-  a(kind);
-  if (kind != light.kind.index()) {
-    switch (kind) {
-      case 1:
-        light.kind = scene::SpotLight();
-        break;
-      case 2:
-        light.kind = scene::DirectionalLight();
-        break;
-      case 3:
-        light.kind = scene::ProfileLight();
-        break;
-      default:
-        light.kind = scene::PointLight();
-    }
-  }
+  archive_alternative(a, light.kind);
   std::visit([&](auto& l) { archive_kind(a, l); }, light.kind);
   for (Eigen::Index i = 0; i < 16; ++i) a(light.to_scene.matrix().data()[i]);
 }

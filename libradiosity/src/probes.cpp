@@ -51,7 +51,7 @@ class Walk {
   /// An estimate of E at the probe, lane mean.
   double irradiance(const Probe& probe) {
     constexpr int kMaxBounces = 10000;  // roulette ends walks long before
-    const Vec3f up = probe.side == Side::Front ? probe.point.ng : Vec3f(-probe.point.ng);
+    const Vec3f up = normal_of(probe.side, probe.point.ng);
     Vertex v{shading_.interact(probe.point, up)};
     for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
       sum_ += v.weight * (v.share * light(v, true) + caustic(v));
@@ -99,7 +99,7 @@ class Walk {
   Spectrum<N> hot_light(const Vertex& v) {
     const SideIndex j = hot_.sample(sampler_.next_1d());
     const SurfacePoint to = problem_.points.sample(j / 2, sampler_.next_2d());
-    const Vec3f facing = side_of(j) == Side::Front ? to.ng : Vec3f(-to.ng);
+    const Vec3f facing = normal_of(j, to.ng);
     const Vec3f d = to.position - v.at.point.position;
     if (!(d.squaredNorm() > 0.0f)) return {};
     const Vec3f wi = d.normalized();
@@ -133,7 +133,7 @@ class Walk {
     Spectrum<N> weight;
     float cosine;           ///< at the vertex
     bool specular = false;  ///< it met more than straight passages through panes
-    MediumStack<N> media;
+    MediumStack<N> media = {};
   };
 
   /// Emission that a ray from v met. \param light_pdf  with which a light sample finds it from v.
@@ -361,7 +361,7 @@ std::vector<Probe> ProbeTracer<N>::place(int count, Counters& counters) const {
       const auto it = std::min(std::upper_bound(until.begin(), until.end(), x), until.end() - 1);
       const SideIndex i = lit[static_cast<std::size_t>(it - until.begin())];
       const SurfacePoint p = problem_.points.sample(i / 2, sampler.next_2d());
-      const Vec3f normal = side_of(i) == Side::Front ? p.ng : Vec3f(-p.ng);
+      const Vec3f normal = normal_of(i, p.ng);
       bool buried = false;
       for (int ray = 0; ray < kBurialRays && !buried; ++ray)
         buried = is_buried(problem_, p, normal, sampler.next_2d(), counters);

@@ -146,8 +146,7 @@ class SideProperties {
     for (std::uint32_t k = 0; k < kPoints; ++k) {
       scene::Sampler sampler(seed_ ^ 0x1175U, streams_[2 * element], k);
       const SurfacePoint p = points_.sample(element, sampler.next_2d());
-      if (lit_.contains(scene::offset_origin(p, side == Side::Front ? p.ng : Vec3f(-p.ng)), near))
-        return true;
+      if (lit_.contains(scene::offset_origin(p, normal_of(side, p.ng)), near)) return true;
     }
     return false;
   }
@@ -157,7 +156,7 @@ class SideProperties {
     for (int k = 0; k < count; ++k) {
       scene::Sampler sampler(seed_ ^ 0x7e57U, streams_[i], static_cast<std::uint32_t>(k));
       const SurfacePoint point = points_.sample(element, sampler.next_2d());
-      const Vec3f up = side == Side::Front ? point.ng : Vec3f(-point.ng);
+      const Vec3f up = normal_of(side, point.ng);
       const scene::Interaction<N> at = shading_.interact(point, up);
       if (!at.bsdf.has(material::kDiffuseEvents)) continue;
       sides.is_active[i] = 1;

@@ -23,6 +23,13 @@ inline constexpr SideIndex kNoSide = 0xffffffffU;
   return element * 2 + static_cast<SideIndex>(side);
 }
 [[nodiscard]] inline scene::Side side_of(SideIndex i) { return static_cast<scene::Side>(i & 1U); }
+/// The normal of a side, given that of its surface.
+[[nodiscard]] inline Vec3f normal_of(scene::Side side, const Vec3f& ng) {
+  return side == scene::Side::Front ? ng : Vec3f(-ng);
+}
+[[nodiscard]] inline Vec3f normal_of(SideIndex i, const Vec3f& ng) {
+  return normal_of(side_of(i), ng);
+}
 
 /// Samples of an element of some level, given those of level 0.
 [[nodiscard]] inline int samples_at_level(int samples, int level) {

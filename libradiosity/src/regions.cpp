@@ -17,8 +17,7 @@ std::vector<Item> items_of(const Problem<N>& problem) {
   items.reserve(problem.sides.active.size());
   for (const SideIndex i : problem.sides.active) {
     const ElementPoints::Spot spot = problem.points.spot(i / 2, 0.5f, 0.5f);
-    const float sign = side_of(i) == scene::Side::Front ? 1.0f : -1.0f;
-    const Vec3f n = sign * problem.points.ng(spot.fan);
+    const Vec3f n = normal_of(i, problem.points.ng(spot.fan));
     items.push_back(
         {i, {spot.position.x(), spot.position.y(), spot.position.z(), n.x(), n.y(), n.z()}});
   }

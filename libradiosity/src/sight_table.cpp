@@ -22,11 +22,6 @@ scene::Sampler sampler_of(std::uint64_t seed, SideIndex i, std::uint32_t source,
   return {seed ^ (std::uint64_t{0x51947ab} << 32), scene::hash32(i) ^ source, ray};
 }
 
-template <int N>
-Vec3f normal_of(SideIndex i, const scene::SurfacePoint& p) {
-  return side_of(i) == scene::Side::Front ? p.ng : Vec3f(-p.ng);
-}
-
 }  // namespace
 
 SightTable::SightTable(const Regions& regions, std::size_t sides, std::size_t sources,
@@ -119,7 +114,7 @@ SightTable sight_of_lights(const Problem<N>& problem, const Regions& regions,
     const auto s = lights.sample_light(light, p.position, sampler.next_2d());
     SightTable::Reach found;
     if (!s || !(s->pdf > 0.0f)) return found;
-    const float cosine = s->wi.dot(normal_of<N>(i, p));
+    const float cosine = s->wi.dot(normal_of(i, p.ng));
     if (!(cosine > 0.0f) || s->radiance.is_zero()) return found;
     found.open = static_cast<double>(s->radiance.mean() * cosine / s->pdf);
     const Spectrum<N> visible = problem.shading.visibility(p, *s, c, scene::Counter::RaysDirect);
@@ -141,8 +136,8 @@ SightTable sight_of_hot(const Problem<N>& problem, const Regions& regions, const
     SightTable::Reach found;
     if (!(d.squaredNorm() > 0.0f)) return found;
     const Vec3f wi = d.normalized();
-    const float receiver = wi.dot(normal_of<N>(i, from));
-    const float sender = -wi.dot(normal_of<N>(j, to));
+    const float receiver = wi.dot(normal_of(i, from.ng));
+    const float sender = -wi.dot(normal_of(j, to.ng));
     if (!(receiver > 0.0f) || !(sender > 0.0f)) return found;
     // As HotPatches::share_of_chance has it: bounded next to the patch.
     found.open = static_cast<double>(hot.share_of(group) * hot.strength() *
