@@ -86,7 +86,7 @@ PlainLayer::PlainLayer(vtkRenderer& renderer) {
   metal->SetInterpolationToFlat();
   metal->SetAmbient(0.45);
   metal->SetDiffuse(0.55);
-  layers_[Glass].actor->GetProperty()->SetOpacity(0.18);
+  layers_[Glass].actor->GetProperty()->SetOpacity(0.12);
   layers_[Glass].actor->ForceTranslucentOn();
   clear();
 }

@@ -220,9 +220,9 @@ TEST_F(Page, ShowsWhatTheTracerShows) {
 
 #ifdef ATRIUM_VIEW_PROGRAM
 
-// The viewer's window of the same solution, camera, exposure and curve: it interpolates what is
-// tone mapped at corners and smooths its edges, so MEAN_BOUND of 255 steps in the mean at most.
-// Another exposure by a tenth of a stop would be three times that.
+// The viewer's picture of the same solution, camera, exposure and curve: it interpolates what is
+// tone mapped at corners and smooths its edges. 0.26 of 255 steps are found in the mean; another
+// exposure by a tenth of a stop would be 3.
 TEST_F(Page, ShowsWhatTheViewerShows) {
   ATRIUM_NEEDS_DISPLAY();
   if (!atrium::scene::image_io_available()) GTEST_SKIP() << "built without OpenImageIO";
@@ -236,7 +236,7 @@ TEST_F(Page, ShowsWhatTheViewerShows) {
   const double mean = mean_difference(atrium::scene::read_image(folder_ / "page.png"),
                                       atrium::scene::read_image(folder_ / "view.png"));
   RecordProperty("mean_difference", std::to_string(mean));
-  EXPECT_LT(mean, 1.0);
+  EXPECT_LT(mean, 0.6);
 }
 
 #endif
