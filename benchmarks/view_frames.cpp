@@ -24,7 +24,7 @@ class Building {
     Building b;
     for (int i = 0; i < rooms; ++i)
       for (int j = 0; j < rooms; ++j) b.add_room({4.2 * i, 0.0, 4.2 * j}, cells);
-    b.mesh_.field_data["unit"] = "lx";
+    b.mesh_.field_data["unit"] = {"lx"};
     b.mesh_.cell_arrays = {b.element_, b.object_};
     b.mesh_.point_arrays = {b.irradiance_, b.radiosity_};
     return std::move(b.mesh_);

@@ -83,6 +83,7 @@ struct Picture::Impl {
   std::vector<Field> fields;
   std::optional<PictureState> state;  ///< shown now; absent: everything is to be made again
   bool geometry_changed = true;
+  bool moving = false;
   std::vector<Selection> built_hidden;
   bool built_no_ceilings = false;
   std::vector<std::uint8_t> shown;  ///< by polygon
@@ -107,6 +108,7 @@ struct Picture::Impl {
     picker.reset();
     update_things(next);
     seen.reset();
+    update_moving();
     geometry_changed = false;
     built_hidden = next.hidden;
     built_no_ceilings = next.no_ceilings;
@@ -121,6 +123,12 @@ struct Picture::Impl {
     }
     thing_triangles = hides.empty() ? Triangles{} : triangulate(things->shapes, hides);
     thing_picker.reset();
+  }
+  [[nodiscard]] bool is_large() const { return triangles.size() > kWhileMoving; }
+  void update_moving() {
+    surface.moving(moving && is_large());
+    edges.hide(moving && is_large());
+    contours.moving(moving && is_large());
   }
   void hide(const std::vector<std::uint8_t>& polygons) {
     for (std::size_t k = 0; k < shown.size(); ++k) shown[k] = polygons[k] != 0 ? 0 : shown[k];
@@ -320,12 +328,11 @@ void Picture::show(const PictureState& next) {
   }
 }
 
-bool Picture::is_large() const { return impl_->triangles.size() > kWhileMoving; }
+bool Picture::is_large() const { return impl_->is_large(); }
 
 void Picture::moving(bool coarse) {
-  impl_->surface.moving(coarse);
-  impl_->edges.hide(coarse && is_large());
-  impl_->contours.moving(coarse && is_large());
+  impl_->moving = coarse;
+  impl_->update_moving();
 }
 
 const Field& Picture::field() const { return impl_->field(); }

@@ -122,11 +122,6 @@ void Surface::colour(Side side, Place place, const std::vector<Colour>& colours)
 
 void Surface::show(const Shown& shown) {
   shown_ = shown;
-  // For all mappers there are. Costs time at every pixel: not without need.
-  if (shown.behind_lines)
-    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
-  else
-    vtkMapper::SetResolveCoincidentTopologyToOff();
   for (const Side side : {Side::Front, Side::Back})
     for (Layer& l : details(side)) {
       vtkProperty* look = l.actor->GetProperty();
@@ -151,6 +146,12 @@ void Surface::moving(bool coarse) {
 }
 
 void Surface::update_visibility() {
+  // For all mappers there are. Costs four fifths of the time in software: not without need, and not
+  // while it moves (contours lie before the surface, edges are gone).
+  if (shown_.behind_lines && !coarse_)
+    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
+  else
+    vtkMapper::SetResolveCoincidentTopologyToOff();
   for (const Side side : {Side::Front, Side::Back})
     for (const std::size_t detail : {0u, 1u})
       details(side)[detail].actor->SetVisibility(
