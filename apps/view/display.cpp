@@ -9,18 +9,17 @@
 
 namespace atrium::view {
 
-void require_display() {
+DisplayConnection::DisplayConnection() {
   const std::string hint = " (for --screenshot a virtual one does: xvfb-run -a atrium-view ...)";
   const char* name = std::getenv("DISPLAY");
   if (name == nullptr || *name == '\0')
     throw RuntimeFailure("no display: DISPLAY is not set" + hint);
-  Display* display = XOpenDisplay(name);
+  Display* const display = XOpenDisplay(name);
   if (display == nullptr)
     throw RuntimeFailure("no display: DISPLAY " + std::string(name) + " cannot be opened" + hint);
+  connection_ = {display, [](void* d) { XCloseDisplay(static_cast<Display*>(d)); }};
   int opcode = 0, event = 0, error = 0;
-  const bool draws = XQueryExtension(display, "GLX", &opcode, &event, &error) != 0;
-  XCloseDisplay(display);
-  if (!draws)
+  if (XQueryExtension(display, "GLX", &opcode, &event, &error) == 0)
     throw RuntimeFailure("no display: DISPLAY " + std::string(name) + " knows no OpenGL (GLX)");
 }
 

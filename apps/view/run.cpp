@@ -3,6 +3,7 @@
 #include <vtkObject.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "common/progress.h"
 #include "display.h"
@@ -70,7 +71,8 @@ int run_view(const ViewCommand& c, std::stop_token stop) {
   app::Progress progress(c.quiet);
   const scene::ThreadLimit threads(c.threads);
   const bool window_needed = c.statistics.empty() || !c.screenshot.empty();
-  if (window_needed) require_display();
+  std::optional<DisplayConnection> display;
+  if (window_needed) display.emplace();
   scene::Control control;
   control.stop = stop;
   control.progress = [&](std::string_view phase, double fraction, std::string_view remark) {

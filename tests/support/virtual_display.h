@@ -47,7 +47,7 @@ class VirtualDisplay : public ::testing::Environment {
     dup2(null, STDOUT_FILENO);
     dup2(null, STDERR_FILENO);
     execlp("Xvfb", "Xvfb", "-displayfd", std::to_string(number_to).c_str(), "-screen", "0",
-           "1280x1024x24", "-nolisten", "tcp", static_cast<char*>(nullptr));
+           "1280x1024x24", "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
     _exit(127);
   }
   pid_t server_ = -1;
