@@ -8,6 +8,7 @@
 #include "frames.h"
 #include "scene/mesh_io.h"
 #include "stage.h"
+#include "support/grid_wall.h"
 
 namespace {
 
@@ -23,7 +24,7 @@ class Building {
     Building b;
     for (int i = 0; i < rooms; ++i)
       for (int j = 0; j < rooms; ++j) b.add_room({4.2 * i, 0.0, 4.2 * j}, cells);
-    b.mesh_.field_data["unit"] = "lx";
+    b.mesh_.field_data["unit"] = {"lx"};
     b.mesh_.cell_arrays = {b.element_, b.object_};
     b.mesh_.point_arrays = {b.irradiance_, b.radiosity_};
     return std::move(b.mesh_);
@@ -42,25 +43,17 @@ class Building {
   }
 
   void add_wall(const Vec3d& corner, const Vec3d& u, const Vec3d& v, int nu, int nv) {
-    const auto first = static_cast<std::uint32_t>(mesh_.points.size());
-    for (int j = 0; j <= nv; ++j)
-      for (int i = 0; i <= nu; ++i) add_point(corner + u * i / nu + v * j / nv);
-    const auto at = [&](int i, int j) {
-      return first + static_cast<std::uint32_t>(j * (nu + 1) + i);
-    };
-    for (int j = 0; j < nv; ++j)
-      for (int i = 0; i < nu; ++i) {
-        for (const std::uint32_t p : {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)})
-          mesh_.polygon_points.push_back(p);
-        mesh_.polygon_sizes.push_back(4);
-        element_.values.push_back(static_cast<float>(element_.values.size()));
-        object_.values.push_back(static_cast<float>(objects_));
-      }
+    const std::size_t first = mesh_.points.size();
+    atrium::test::add_grid_wall(mesh_, corner, u, v, nu, nv);
+    for (int k = 0; k < nu * nv; ++k) {
+      element_.values.push_back(static_cast<float>(element_.values.size()));
+      object_.values.push_back(static_cast<float>(objects_));
+    }
+    for (std::size_t p = first; p < mesh_.points.size(); ++p) light(mesh_.points[p]);
     ++objects_;
   }
 
-  void add_point(const Vec3d& p) {
-    mesh_.points.push_back(p);
+  void light(const Vec3d& p) {
     const double lux = 300.0 + 200.0 * std::sin(2.0 * p.x()) * std::cos(1.7 * p.z()) * p.y();
     for (const double paint : {0.7, 0.6, 0.5}) {
       irradiance_.values.push_back(static_cast<float>(lux));

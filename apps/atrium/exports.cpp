@@ -61,6 +61,10 @@ void check_export_options(const ExportSettings& settings, const std::vector<std:
     throw Error("--exposure: there is no .glb or .html output");
   if (settings.lightmap > 0 && !any(files, is_glb))
     throw Error("--lightmap: there is no .glb output");
+  if (settings.group_colours && !any(files, is_glb))
+    throw Error("--group-colours: there is no .glb output");
+  if (settings.group_colours && settings.lightmap > 0)
+    throw Error("--group-colours: not together with --lightmap, which has the sum of all groups");
   if (settings.lightmap > 0 && settings.lightmap < 16)
     throw Error("--lightmap " + std::to_string(settings.lightmap) + ": must be 0, or 16 to 16384");
   if (settings.lightmap > 0 && !scene::image_io_available())
@@ -225,7 +229,8 @@ class Writer {
   }
 
   void write_glb(const std::string& file) {
-    const BakedModel model = bake({.lightmap = settings_.lightmap});
+    const BakedModel model =
+        bake({.group_light = settings_.group_colours, .lightmap = settings_.lightmap});
     if (settings_.lightmap > 0) describe_lightmap(file, model);
     const scene::GlbOptions options = glb_options(model);
     scene::GlbStatistics statistics;

@@ -1,24 +1,10 @@
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <new>
-#include <stdexcept>
-#include <string>
-
 #include "commands.h"
 #include "common/interrupt.h"
-#include "material/error.h"
+#include "common/run_main.h"
 
 namespace {
 
 using namespace atrium::app;
-
-int fail(int code, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::fprintf(stderr, "atrium: error: %s\n", message.c_str());
-  return code;
-}
 
 struct Run {
   std::stop_token stop;
@@ -37,27 +23,13 @@ struct Run {
   int operator()(const MaterialCompareCommand& c) const { return run_material_compare(c, stop); }
 };
 
-int run(int argc, char** argv) {
-  try {
+}  // namespace
+
+int main(int argc, char** argv) {
+  run_main("atrium", [&] {
     const Command command = parse_command_line(argc, argv);
     if (const auto* finished = std::get_if<Finished>(&command)) return finished->code;
     const std::stop_source interrupts = watch_interrupts();
     return std::visit(Run{interrupts.get_token()}, command);
-  } catch (const atrium::Error& e) {
-    return fail(2, e.what());
-  } catch (const std::bad_alloc&) {
-    return fail(1, "out of memory");
-  } catch (const std::exception& e) {
-    return fail(1, e.what());
-  }
-}
-
-}  // namespace
-
-/// Leaves without running static destructors: threads of TBB, of image libraries and the one that
-/// waits for signals may still use what those would destroy. All files are complete by then.
-int main(int argc, char** argv) {
-  const int code = run(argc, argv);
-  std::fflush(nullptr);
-  std::_Exit(code);
+  });
 }

@@ -79,6 +79,7 @@ struct RenderCommand {
 struct ExportSettings {
   std::optional<double> ev;    ///< absent: automatic
   std::uint32_t lightmap = 0;  ///< edge of the atlas of .glb [texels]; 0: vertex colours
+  bool group_colours = false;  ///< of .glb: the light of every group, too
   std::string title;           ///< of web pages
 };
 

@@ -60,8 +60,10 @@ class HeightMap {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_ceilings(const Mesh& mesh) {
-  const HeightMap heights(mesh);
+std::vector<std::uint8_t> find_ceilings(const Mesh& mesh) { return find_ceilings(mesh, mesh); }
+
+std::vector<std::uint8_t> find_ceilings(const Mesh& building, const Mesh& mesh) {
+  const HeightMap heights(building);
   std::vector<std::uint8_t> ceiling(mesh.polygon_count(), 0);
   for (std::size_t k = 0; k < ceiling.size(); ++k) {
     const float area = mesh.area(k);

@@ -12,5 +12,7 @@ namespace atrium::view {
 /// their faces, table tops and the ground stay. By a map of heights over the plan, whichever way
 /// faces are wound.
 [[nodiscard]] std::vector<std::uint8_t> find_ceilings(const Mesh& mesh);
+/// The same of polygons that are no part of the building's mesh, such as lamps below its ceilings.
+[[nodiscard]] std::vector<std::uint8_t> find_ceilings(const Mesh& building, const Mesh& polygons);
 
 }  // namespace atrium::view

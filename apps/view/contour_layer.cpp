@@ -2,7 +2,6 @@
 
 #include <vtkActor.h>
 #include <vtkCamera.h>
-#include <vtkCommand.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
@@ -15,21 +14,15 @@
 #include <cmath>
 #include <cstdio>
 
+#include "callback.h"
 #include "overlay.h"
 #include "range.h"
-#include "seen_light.h"
 
 namespace atrium::view {
 namespace {
 
 constexpr std::size_t kMostLabels = 60;
-
-class Started : public vtkCommand {
- public:
-  static Started* New() { return new Started; }
-  void Execute(vtkObject*, unsigned long, void*) override { act(); }
-  std::function<void()> act;
-};
+constexpr vtkIdType kWhileMoving = 30000;  // points of lines
 
 vtkSmartPointer<vtkTextActor> make_text(vtkRenderer& renderer) {
   auto text = vtkSmartPointer<vtkTextActor>::New();
@@ -60,32 +53,45 @@ std::optional<Vec2d> project(vtkRenderer& renderer, const Vec3d& p) {
 
 ContourLayer::ContourLayer(vtkRenderer& renderer, Pick pick)
     : renderer_(renderer), pick_(std::move(pick)) {
-  vtkNew<Started> started;
-  started->act = [this] { place(); };
-  observer_ = renderer.AddObserver(vtkCommand::StartEvent, started);
+  observer_ = renderer.AddObserver(vtkCommand::StartEvent, callback([this] { place(); }));
 }
 ContourLayer::~ContourLayer() { renderer_.RemoveObserver(observer_); }
 
 void ContourLayer::add(vtkSmartPointer<vtkPolyData> lines, double size) {
   if (lines->GetNumberOfLines() == 0) return;
   size_ = size;
+  add_actor(*lines, false);
+  add_actor(*thinned(*lines, kWhileMoving), true);
+  update_visibility();
+  for (const ContourLabel& label : place_labels(*lines, 0.02 * size)) labels_.push_back(label);
+}
+
+void ContourLayer::add_actor(vtkPolyData& lines, bool coarse) {
   vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(lines);
+  mapper->SetInputData(&lines);
   mapper->ScalarVisibilityOff();
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(mapper);
   actor->GetProperty()->SetColor(0.0, 0.0, 0.0);
-  actor->GetProperty()->SetLineWidth(1.5f);
+  actor->GetProperty()->SetLineWidth(coarse ? 1.0f : 1.5f);
   actor->GetProperty()->LightingOff();
   renderer_.AddActor(actor);
-  actors_.push_back(std::move(actor));
-  for (const ContourLabel& label : place_labels(*lines, 0.02 * size)) labels_.push_back(label);
+  lines_.push_back({std::move(actor), coarse});
+}
+
+void ContourLayer::moving(bool coarse) {
+  coarse_ = coarse;
+  update_visibility();
+}
+
+void ContourLayer::update_visibility() {
+  for (const Lines& l : lines_) l.actor->SetVisibility(l.coarse == coarse_);
 }
 
 void ContourLayer::clear() {
-  for (const auto& a : actors_) renderer_.RemoveActor(a);
+  for (const Lines& l : lines_) renderer_.RemoveActor(l.actor);
   for (const auto& t : texts_) renderer_.RemoveViewProp(t);
-  actors_.clear();
+  lines_.clear();
   texts_.clear();
   labels_.clear();
 }
@@ -97,6 +103,10 @@ std::size_t ContourLayer::label_count() const {
 
 /// Where a line is seen and no other label stands.
 void ContourLayer::place() {
+  if (coarse_) {
+    for (const auto& t : texts_) t->VisibilityOff();
+    return;
+  }
   const int* extent = renderer_.GetSize();
   if (labels_.empty() || extent[0] < 2 || extent[1] < 2) return;
   const double aspect = static_cast<double>(extent[0]) / extent[1];

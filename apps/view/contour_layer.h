@@ -1,13 +1,11 @@
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include <vtkSmartPointer.h>
 
 #include "contour_lines.h"
-#include "picker.h"
+#include "seen_light.h"
 
 class vtkActor;
 class vtkPolyData;
@@ -19,9 +17,6 @@ namespace atrium::view {
 /// Contour lines with their values written on them, where they are seen.
 class ContourLayer {
  public:
-  /// First thing along a ray.
-  using Pick =
-      std::function<std::optional<Picker::Hit>(const Vec3d& origin, const Vec3d& direction)>;
   ContourLayer(vtkRenderer& renderer, Pick pick);
   ~ContourLayer();
   ContourLayer(const ContourLayer&) = delete;
@@ -31,17 +26,26 @@ class ContourLayer {
   /// \param size  of the mesh [m].
   void add(vtkSmartPointer<vtkPolyData> lines, double size);
   void clear();
+  /// While it is true labels are gone and long lists of lines are drawn by some of their points.
+  void moving(bool coarse);
   [[nodiscard]] std::size_t label_count() const;  ///< that are seen
 
  private:
   void place();
+  void add_actor(vtkPolyData& lines, bool coarse);
+  void update_visibility();
 
   vtkRenderer& renderer_;
   Pick pick_;
-  std::vector<vtkSmartPointer<vtkActor>> actors_;
+  struct Lines {
+    vtkSmartPointer<vtkActor> actor;
+    bool coarse;
+  };
+  std::vector<Lines> lines_;
   std::vector<ContourLabel> labels_;
   std::vector<vtkSmartPointer<vtkTextActor>> texts_;
   double size_ = 1.0;
+  bool coarse_ = false;
   unsigned long observer_ = 0;
 };
 

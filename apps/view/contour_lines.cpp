@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vtk_shapes.h"
+
 namespace atrium::view {
 namespace {
 
@@ -27,15 +29,9 @@ std::vector<Vec3f> normals_of(const Mesh& mesh) {
   return normals;
 }
 
-double size_of(const Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3d& p : mesh.polygons.points) box.extend(p);
-  return box.diagonal().norm();
-}
-
 vtkSmartPointer<vtkPolyData> known_triangles(const Mesh& mesh, const Triangles& triangles,
                                              Side side, const Values& values) {
-  const double before = (side == Side::Front ? 4e-4 : -4e-4) * size_of(mesh);
+  const double before = (side == Side::Front ? 4e-4 : -4e-4) * mesh.diagonal;
   const std::vector<Vec3f> normals = normals_of(mesh);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -58,13 +54,9 @@ vtkSmartPointer<vtkPolyData> known_triangles(const Mesh& mesh, const Triangles& 
 }
 
 vtkSmartPointer<vtkPolyData> cut(vtkSmartPointer<vtkPolyData> lines, const Clip& clip) {
-  vtkNew<vtkPlane> plane;
-  const Vec3d origin = clip.distance * clip.normal;
-  plane->SetOrigin(origin.x(), origin.y(), origin.z());
-  plane->SetNormal(-clip.normal.x(), -clip.normal.y(), -clip.normal.z());
   vtkNew<vtkClipPolyData> filter;
   filter->SetInputData(lines);
-  filter->SetClipFunction(plane);
+  filter->SetClipFunction(vtk_plane(clip));
   filter->Update();
   return filter->GetOutput();
 }
@@ -88,6 +80,26 @@ vtkSmartPointer<vtkPolyData> find_contours(const Mesh& mesh, const Triangles& tr
   stripper->SetMaximumLength(100000);
   stripper->Update();
   return stripper->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> thinned(vtkPolyData& lines, vtkIdType wanted) {
+  const vtkIdType step = 1 + lines.GetNumberOfPoints() / std::max<vtkIdType>(1, wanted);
+  if (step == 1) return &lines;
+  vtkNew<vtkCellArray> cells;
+  const auto old = vtk::TakeSmartPointer(lines.GetLines()->NewIterator());
+  for (old->GoToFirstCell(); !old->IsDoneWithTraversal(); old->GoToNextCell()) {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    old->GetCurrentCell(count, ids);
+    if (count < 2) continue;
+    cells->InsertNextCell(static_cast<int>((count - 2) / step + 2));
+    for (vtkIdType i = 0; i < count - 1; i += step) cells->InsertCellPoint(ids[i]);
+    cells->InsertCellPoint(ids[count - 1]);
+  }
+  auto thin = vtkSmartPointer<vtkPolyData>::New();
+  thin->SetPoints(lines.GetPoints());
+  thin->SetLines(cells);
+  return thin;
 }
 
 std::vector<ContourLabel> place_labels(vtkPolyData& lines, double gap) {

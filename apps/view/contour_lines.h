@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <vtkSmartPointer.h>
+#include <vtkType.h>
 
 #include "mesh.h"
 #include "picker.h"
@@ -23,6 +24,9 @@ namespace atrium::view {
                                                          const Values& values,
                                                          const std::vector<double>& levels,
                                                          const std::vector<Clip>& clips);
+
+/// Polylines by about so many of their points; the first and the last of each stay.
+[[nodiscard]] vtkSmartPointer<vtkPolyData> thinned(vtkPolyData& lines, vtkIdType wanted);
 
 /// Where a label says which value a line has.
 struct ContourLabel {

@@ -42,35 +42,46 @@ void name_things(const scene::Scene& scene, Mesh& mesh) {
 
 #ifdef ATRIUM_WITH_RADIOSITY
 
-Mesh read_solution_mesh(const LoadedScene& loaded, const std::string& file) {
+/// A mesh and what stands beside it.
+void show(const LoadedScene& loaded, const radiosity::Elements& elements,
+          const scene::SurfaceField& field, std::span<const scene::GroupField> groups,
+          Document& document) {
+  document.mesh = mesh_of(loaded, elements, field, groups);
+  document.things = plain_things(loaded, document.mesh, groups);
+}
+
+void read_solution(const LoadedScene& loaded, const std::string& file, Document& document) {
   const scene::Solution solution = scene::read_solution(file);
   std::string basis = loaded.basis.describe();
   if (solution.basis == basis + ", paper mode") basis = solution.basis;
   scene::check_solution(solution, *loaded.scene, basis, file);
   const radiosity::Elements elements = radiosity::elements_of_field(*loaded.scene, solution.field);
-  return mesh_of(loaded, elements, solution.field, solution.groups);
+  show(loaded, elements, solution.field, solution.groups, document);
 }
 
-Mesh solve_mesh(const LoadedScene& loaded, const SolveChoice& choice, const scene::Control& control,
-                const std::function<void(const std::string&)>& warn) {
+void solve(const LoadedScene& loaded, const SolveChoice& choice, const scene::Control& control,
+           const std::function<void(const std::string&)>& warn, Document& document) {
   require_light(loaded);
   const radiosity::SolveResult r =
       radiosity::solve(*loaded.query, loaded.basis, solve_options(choice), control);
   if (choice.error > 0.0 && r.stopped_by != "error")
     warn("the error asked for was not reached: stopped by " + r.stopped_by);
-  return mesh_of(loaded, r.elements, r.field, r.groups);
+  show(loaded, r.elements, r.field, r.groups, document);
 }
 
 #endif
 
-Mesh mesh_of_scene([[maybe_unused]] const LoadedScene& loaded, [[maybe_unused]] const Files& files,
-                   [[maybe_unused]] const ViewCommand& command,
-                   [[maybe_unused]] const scene::Control& control,
-                   [[maybe_unused]] const std::function<void(const std::string&)>& warn) {
+void make_mesh_of(const LoadedScene& loaded, const Files& files, const ViewCommand& command,
+                  const scene::Control& control,
+                  const std::function<void(const std::string&)>& warn, Document& document) {
 #ifdef ATRIUM_WITH_RADIOSITY
-  return files.solution.empty() ? solve_mesh(loaded, command.solve, control, warn)
-                                : read_solution_mesh(loaded, files.solution);
+  if (files.solution.empty())
+    solve(loaded, command.solve, control, warn, document);
+  else
+    read_solution(loaded, files.solution, document);
 #else
+  static_cast<void>(loaded), static_cast<void>(files), static_cast<void>(command);
+  static_cast<void>(control), static_cast<void>(warn), static_cast<void>(document);
   throw RuntimeFailure("radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
 #endif
 }
@@ -91,10 +102,13 @@ Document load_document(const ViewCommand& command, const scene::Control& control
   if (!files.scenes.empty()) {
     LoadedScene loaded = load_scene(files.scenes, command.solve);
     warn_of_scene(*loaded.scene, warn);
-    if (files.mesh.empty())
-      document.mesh = mesh_of_scene(loaded, files, command, control, warn);
-    else
+    if (files.mesh.empty()) {
+      make_mesh_of(loaded, files, command, control, warn, document);
+    } else {
       name_things(*loaded.scene, document.mesh);
+      document.things =
+          plain_things(loaded, document.mesh, groups_named(*loaded.scene, document.mesh.groups));
+    }
     document.views = std::move(loaded.views);
   } else if (files.mesh.empty()) {
     throw Error(files.solution + ": a solution is shown together with its scene: atrium-view " +

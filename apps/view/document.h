@@ -8,6 +8,7 @@
 
 #include "mesh.h"
 #include "options.h"
+#include "plain_things.h"
 #include "scene/control.h"
 #include "view_point.h"
 
@@ -20,6 +21,7 @@ struct Document {
   Mesh mesh;
   std::vector<ViewPoint> views;  ///< of the scene, then overview and plan
   std::string title;
+  PlainThings things;  ///< of the scene, beside the mesh
 };
 
 /// Adds overview and plan to views of a scene.

@@ -20,6 +20,12 @@ namespace {
 constexpr int kMarks = 6;
 constexpr double kLeft = 0.84;  // of the picture's width
 
+/// Names of models can be long.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kMost = 26;
+  return text.size() <= kMost ? text : text.substr(0, kMost - 3) + "...";
+}
+
 }  // namespace
 
 std::vector<std::pair<double, std::string>> scale_marks(const Range& range,
@@ -90,14 +96,21 @@ void Legend::show_classes(const std::vector<Entry>& entries) {
   const int height = renderer_.GetSize()[1];
   const int letters = std::max(8, letter_size(height) - 2);
   const double row = 1.5 * letters / std::max(1, height);
+  std::size_t longest = 0;
+  for (const Entry& e : entries) longest = std::max(longest, shortened(e.text).size());
+  // Letters are about half as wide as they are high.
+  const double width = static_cast<double>(std::max(1, renderer_.GetSize()[0]));
+  const double left = 0.99 - 0.58 * letters * static_cast<double>(longest) / width;
+  const double swatch_left = left - 2.2 * letters / width;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double y = 0.96 - row * static_cast<double>(i + 1);
-    const auto& [text, c] = entries[i];
+    const std::string text = shortened(entries[i].text);
+    const Colour& c = entries[i].colour;
     for (const bool swatch : {true, false}) {
       auto actor = vtkSmartPointer<vtkTextActor>::New();
       actor->SetInput(swatch ? "    " : text.c_str());
       actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-      actor->GetPositionCoordinate()->SetValue(swatch ? 0.76 : 0.80, y);
+      actor->GetPositionCoordinate()->SetValue(swatch ? swatch_left : left, y);
       vtkTextProperty* look = actor->GetTextProperty();
       look->SetFontSize(letters);
       look->SetColor(1.0, 1.0, 1.0);

@@ -13,19 +13,9 @@
 
 #include "element_edges.h"
 #include "surface.h"
+#include "vtk_shapes.h"
 
 namespace atrium::view {
-namespace {
-
-vtkSmartPointer<vtkPoints> points_of(const Mesh& mesh) {
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  for (const Vec3d& p : mesh.polygons.points) points->InsertNextPoint(p.data());
-  return points;
-}
-
-}  // namespace
-
 LineLayer::LineLayer(vtkRenderer& renderer, Colour colour, double width)
     : mapper_(vtkSmartPointer<vtkPolyDataMapper>::New()), actor_(vtkSmartPointer<vtkActor>::New()) {
   mapper_->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -2.0);
@@ -42,7 +32,7 @@ void LineLayer::show_edges(const Mesh& mesh, const std::vector<std::uint8_t>& sh
   vtkNew<vtkCellArray> lines;
   for (const auto& e : element_edges(mesh, shown)) lines->InsertNextCell({e[0], e[1]});
   vtkNew<vtkPolyData> data;
-  data->SetPoints(points_of(mesh));
+  data->SetPoints(vtk_points(mesh.polygons.points));
   data->SetLines(lines);
   mapper_->SetInputData(data);
   has_lines_ = true;
@@ -57,7 +47,7 @@ void LineLayer::show_outline(const Mesh& mesh, const std::vector<std::uint8_t>& 
     for (const std::uint32_t c : mesh.corners(k)) polygons->InsertCellPoint(c);
   }
   vtkNew<vtkPolyData> data;
-  data->SetPoints(points_of(mesh));
+  data->SetPoints(vtk_points(mesh.polygons.points));
   data->SetPolys(polygons);
   vtkNew<vtkFeatureEdges> edges;
   edges->SetInputData(data);

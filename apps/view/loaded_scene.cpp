@@ -43,6 +43,8 @@ Mesh bare_mesh(const LoadedScene& loaded) {
   Array object{"object_id", 1, {}};
   for (std::size_t o = 0; o < s.objects.size(); ++o) {
     const scene::ObjectId id(o);
+    const material::MaterialTraits traits = material::traits(s.material_of(id));
+    if (!traits.diffuse_reflection && !traits.diffuse_transmission) continue;
     for (std::uint32_t t = 0; t < s.mesh_of(id).triangles.size(); ++t) {
       for (const Vec3f& corner : s.corners(id, t)) {
         polygons.polygon_points.push_back(static_cast<std::uint32_t>(polygons.points.size()));

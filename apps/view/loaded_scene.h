@@ -27,7 +27,7 @@ struct LoadedScene {
 /// What loading warned of: the first ten lines.
 void warn_of_scene(const scene::Scene& scene, const std::function<void(const std::string&)>& warn);
 
-/// The scene's triangles with materials and objects, without light.
+/// Triangles of the surfaces that will have elements, with materials and objects, without light.
 [[nodiscard]] Mesh bare_mesh(const LoadedScene& loaded);
 
 /// \throws Error  why there is nothing to solve.

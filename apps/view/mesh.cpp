@@ -85,6 +85,9 @@ Mesh make_mesh(scene::PolygonMesh polygons, const std::string& name) {
     first += size;
   }
   mesh.first_corner.push_back(first);
+  Eigen::AlignedBox3d box;
+  for (const Vec3d& p : mesh.polygons.points) box.extend(p);
+  mesh.diagonal = box.isEmpty() ? 0.0 : box.diagonal().norm();
   mesh.area_normal.resize(mesh.polygon_count());
   for (std::size_t k = 0; k < mesh.polygon_count(); ++k) mesh.area_normal[k] = area_normal(mesh, k);
   return mesh;

@@ -20,6 +20,8 @@ struct Mesh {
       first_corner;                ///< by polygon, into polygon_points; one more at the end
   std::vector<Vec3f> area_normal;  ///< by polygon: normal, as long as the area [m^2]
   std::vector<std::string> materials, objects;  ///< names by id; empty: not known
+  std::vector<std::string> groups;              ///< light groups as the scene names them
+  double diagonal = 0.0;                        ///< of the box of all points [m]
   double lux_per_unit = 1.0;  ///< illuminance per luminance of irradiance: 1 in lx, 179 in W/m^2
 
   [[nodiscard]] std::size_t polygon_count() const { return polygons.polygon_sizes.size(); }

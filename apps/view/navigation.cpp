@@ -60,15 +60,14 @@ void Navigation::Dolly() {
   move_ahead(1.0 - std::exp(-3.0 * dy / this->CurrentRenderer->GetSize()[1]));
 }
 
-void Navigation::OnMouseWheelForward() {
+void Navigation::OnMouseWheelForward() { turn_wheel(0.1); }
+void Navigation::OnMouseWheelBackward() { turn_wheel(-0.1); }
+
+void Navigation::turn_wheel(double share) {
   this->FindPokedRenderer(this->Interactor->GetEventPosition()[0],
                           this->Interactor->GetEventPosition()[1]);
-  move_ahead(0.1);
-}
-void Navigation::OnMouseWheelBackward() {
-  this->FindPokedRenderer(this->Interactor->GetEventPosition()[0],
-                          this->Interactor->GetEventPosition()[1]);
-  move_ahead(-0.1);
+  if (stepped) stepped();
+  move_ahead(share);
 }
 
 }  // namespace atrium::view

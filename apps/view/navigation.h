@@ -16,6 +16,8 @@ class Navigation : public vtkInteractorStyleTrackballCamera {
   bool walking = false;
   /// The mouse moved without a button, or a movement ended.
   std::function<void()> hovered;
+  /// The wheel is about to move the camera.
+  std::function<void()> stepped;
 
   void OnMouseMove() override;
   void Rotate() override;
@@ -27,6 +29,7 @@ class Navigation : public vtkInteractorStyleTrackballCamera {
   void OnKeyRelease() override {}
 
  private:
+  void turn_wheel(double share);
   void move_ahead(double share);
 };
 

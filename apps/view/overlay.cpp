@@ -30,7 +30,8 @@ void set(vtkTextActor& actor, const std::string& text) {
 
 }  // namespace
 
-int letter_size(int height) { return std::clamp(height / 48, 8, 30); }
+/// Small pictures are shown as large as they are, so their letters are a larger part of them.
+int letter_size(int height) { return std::clamp(height / 48, std::clamp(height / 30, 8, 11), 30); }
 
 Overlay::Overlay(vtkRenderer& renderer)
     : status_(text_at(renderer, 0.01, 0.985)),

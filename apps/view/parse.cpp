@@ -1,9 +1,7 @@
 // The only code of the viewer that sees CLI11.
-#include <CLI/CLI.hpp>
-
 #include <iostream>
-#include <set>
 
+#include "common/cli_options.h"
 #include "common/option_values.h"
 #include "keys.h"
 #include "look_text.h"
@@ -17,10 +15,11 @@ namespace {
 
 /// Texts of options that are checked and converted together after parsing.
 struct Texts {
-  std::string size, range, contours, exposure = "auto", side = "seen", quality = "draft",
-                                     solver = "rows", emissive_unit = "nit";
+  std::string size, range, contours, exposure = "auto", side = "seen", solver = "rows";
   std::vector<std::string> clips, weights;
-  bool light_groups = false, no_pane_detection = false;
+  bool light_groups = false;
+  app::cli::QualityOption quality{"draft"};
+  app::cli::ModelOptions model;
 };
 
 void add_look(CLI::App& app, LookOptions& o, Texts& t) {
@@ -49,45 +48,25 @@ void add_look(CLI::App& app, LookOptions& o, Texts& t) {
   app.add_flag("--edges", o.edges, "edges of elements");
   app.add_flag("--cull", o.cull, "hide faces that are turned away");
   app.add_flag("--no-ceilings", o.no_ceilings, "hide what covers rooms");
-  // One value per mention (allow_extra_args): a file that follows is a file.
-  app.add_option("--hide", o.hidden, "object=NAME or material=NAME, may be repeated")
-      ->type_name("WHICH")
-      ->allow_extra_args(false);
-  app.add_option("--clip", t.clips,
-                 "what stays: y<2.4, x>1 or nx,ny,nz<distance [m], may be repeated")
-      ->type_name("PLANE")
-      ->allow_extra_args(false);
-  app.add_option("--weights", t.weights, "factor of a light group, may be repeated")
-      ->type_name("GROUP=FACTOR")
-      ->allow_extra_args(false);
+  app::cli::add_repeatable(app, "--hide", o.hidden, "object=NAME or material=NAME", "WHICH");
+  app::cli::add_repeatable(app, "--clip", t.clips,
+                           "what stays: y<2.4, x>1 or nx,ny,nz<distance [m]", "PLANE");
+  app::cli::add_repeatable(app, "--weights", t.weights, "factor of a light group", "GROUP=FACTOR");
   app.add_flag("--no-legend", o.no_legend, "no scale");
 }
 
 void add_solve(CLI::App& app, ViewCommand& o, Texts& t) {
   app.add_flag("--solve", o.live, "show a scene's solution while it converges");
-  app.add_option("--quality", t.quality, "effort for a scene: draft, normal or high")
-      ->check(CLI::IsMember({"draft", "normal", "high"}))
-      ->capture_default_str();
+  t.quality.add(app);
   app.add_option("--solver", t.solver, "rows, or shooting (diffuse scenes only)")
       ->check(CLI::IsMember({"rows", "shooting"}))
       ->capture_default_str();
-  app.add_option("--error", o.solve.error,
-                 "go on until the RMS of irradiance is below this share of it (0.02: 2 %); 0: the "
-                 "effort of --quality")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_option("--time-limit", o.solve.time_limit, "for solving [s]; 0: none")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
+  app::cli::add_error(app, o.solve.error);
+  app::cli::add_time_limit(app, o.solve.time_limit);
   app.add_flag("--light-groups", t.light_groups,
                "keep the light of each lamp name apart; default: of each light_group in the scene");
-  app.add_option("--seed", o.solve.seed, "of all random numbers")->capture_default_str();
-  app.add_option("--emissive-unit", t.emissive_unit,
-                 "what emissive numbers of models are: nit, or radiance in W/(sr m^2)")
-      ->check(CLI::IsMember({"nit", "radiance"}))
-      ->capture_default_str();
-  app.add_flag("--no-pane-detection", t.no_pane_detection,
-               "keep closed solids with two parallel faces as solids");
+  app::cli::add_seed(app, o.solve.seed);
+  t.model.add(app);
 }
 
 void add_output(CLI::App& app, ViewCommand& o, Texts& t) {
@@ -109,10 +88,8 @@ void add_output(CLI::App& app, ViewCommand& o, Texts& t) {
   app.add_option("--measure-frames", o.measure_frames,
                  "draw so many frames of an orbit, print how fast, and leave")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--threads", o.threads, "threads; 0: one per core")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app.add_flag("--quiet,-q", o.quiet, "no progress; warnings stay");
+  app::cli::add_threads(app, o.threads);
+  app::cli::add_quiet(app, o.quiet);
 }
 
 void finish_look(LookOptions& o, const Texts& t) {
@@ -124,34 +101,41 @@ void finish_look(LookOptions& o, const Texts& t) {
   for (const std::string& text : t.weights)
     o.weights.push_back(app::parse_factor("--weights", text));
   o.ev = app::parse_exposure(t.exposure);
-  o.side = t.side == "front"  ? ShownSide::Front
-           : t.side == "back" ? ShownSide::Back
-                              : ShownSide::Seen;
+  o.side = app::cli::choose<ShownSide>(
+      t.side, {{"seen", ShownSide::Seen}, {"front", ShownSide::Front}, {"back", ShownSide::Back}});
 }
 
 /// Options that would be ignored, or that say two things, are mistakes worth a word.
 void check(const CLI::App& app, const ViewCommand& o) {
-  std::size_t solved = 0;
-  for (const std::string& f : o.files)
-    solved += is_mesh_file(f) || scene::file_ending(f) == ".atrium" ? 1 : 0;
-  if (solved > 1) throw Error(o.files.back() + ": one mesh or solution at a time");
+  const auto refuse = [&](std::initializer_list<const char*> names, const std::string& why) {
+    for (const char* name : names)
+      if (app.count(name) > 0) throw Error(std::string(name) + ": " + why);
+  };
+  std::string solved;
+  for (const std::string& f : o.files) {
+    if (!is_mesh_file(f) && scene::file_ending(f) != ".atrium") continue;
+    if (!solved.empty()) throw Error(f + ": one mesh or solution at a time, there is " + solved);
+    solved = f;
+  }
   if (o.solve.shooting)
-    for (const char* name : {"--error", "--light-groups", "--weights"})
-      if (app.count(name) > 0) throw Error(std::string(name) + ": only with --solver rows");
-  if (solved > 0)
-    for (const char* name :
-         {"--solve", "--solver", "--quality", "--error", "--time-limit", "--seed"})
-      if (app.count(name) > 0)
-        throw Error(std::string(name) + ": nothing is solved with a mesh or a solution");
+    refuse({"--error", "--light-groups", "--weights"}, "only with --solver rows");
+  if (!solved.empty())
+    refuse(
+        {"--solve", "--solver", "--quality", "--error", "--time-limit", "--seed", "--light-groups"},
+        "nothing is solved with a mesh or a solution");
+  if (o.files.size() == 1 && is_mesh_file(solved))
+    refuse({"--emissive-unit", "--no-pane-detection"}, "there is no scene to read");
+  if (!o.statistics.empty() && o.screenshot.empty())
+    refuse({"--camera", "--range", "--log", "--exposure", "--contours", "--flat", "--edges",
+            "--cull", "--no-ceilings", "--hide", "--clip", "--no-legend", "--size"},
+           "has no meaning for --statistics without --screenshot");
   if (!o.screenshot.empty()) {
     if (scene::file_ending(o.screenshot) != ".png")
       throw Error(o.screenshot + ": a screenshot is a .png");
     scene::check_output(o.screenshot);
   }
   if (o.measure_frames > 0)
-    for (const char* name : {"--screenshot", "--statistics", "--solve"})
-      if (app.count(name) > 0)
-        throw Error("--measure-frames: not together with " + std::string(name));
+    refuse({"--screenshot", "--statistics", "--solve"}, "not together with --measure-frames");
 }
 
 ViewCommand finish(ViewCommand o, const Texts& t, const CLI::App& app) {
@@ -161,14 +145,11 @@ ViewCommand finish(ViewCommand o, const Texts& t, const CLI::App& app) {
     if (o.size[0] < 16 || o.size[1] < 16 || o.size[0] > 16384 || o.size[1] > 16384)
       throw Error("--size " + t.size + ": is not between 16x16 and 16384x16384");
   }
-  o.solve.quality = t.quality == "draft"    ? app::Quality::Draft
-                    : t.quality == "normal" ? app::Quality::Normal
-                                            : app::Quality::High;
+  o.solve.quality = t.quality.value();
   o.solve.shooting = t.solver == "shooting";
   o.solve.groups = t.light_groups ? scene::Grouping::ByName : scene::Grouping::Declared;
-  // 179 lm/W: the luminous efficacy of white light where watts have to become lumens.
-  o.solve.nits_per_emissive_unit = t.emissive_unit == "radiance" ? 179.0 : 1.0;
-  o.solve.pane_detection = !t.no_pane_detection;
+  o.solve.nits_per_emissive_unit = t.model.nits_per_emissive_unit();
+  o.solve.pane_detection = t.model.pane_detection();
   check(app, o);
   return o;
 }
@@ -194,8 +175,7 @@ std::variant<Finished, ViewCommand> parse_command_line(int argc, char** argv) {
     std::cout << e.what() << '\n';
     return Finished{0};
   } catch (const CLI::ParseError& e) {
-    const std::string text = e.what();
-    throw Error(text.substr(0, text.find('\n')) + " (see atrium-view --help)");
+    throw Error(app::cli::usage_error(e, "atrium-view"));
   }
   return finish(command, texts, app);
 }

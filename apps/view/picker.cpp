@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "vtk_shapes.h"
+
 namespace atrium::view {
 
 struct Picker::Impl {
@@ -20,15 +22,9 @@ struct Picker::Impl {
   Vec3d centre = Vec3d::Zero();
 
   explicit Impl(const Mesh& m, const Triangles& t) : mesh(m), triangles(t) {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    for (const Vec3d& p : mesh.polygons.points) points->InsertNextPoint(p.data());
-    vtkNew<vtkCellArray> cells;
-    cells->AllocateExact(static_cast<vtkIdType>(t.size()), 3 * static_cast<vtkIdType>(t.size()));
-    for (const auto& c : t.corners) cells->InsertNextCell({c[0], c[1], c[2]});
     vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(cells);
+    data->SetPoints(vtk_points(mesh.polygons.points));
+    data->SetPolys(vtk_triangles(t));
     double bounds[6];
     data->GetBounds(bounds);
     centre = 0.5 * Vec3d(bounds[0] + bounds[1], bounds[2] + bounds[3], bounds[4] + bounds[5]);

@@ -15,7 +15,9 @@
 #include "contour_lines.h"
 #include "legend.h"
 #include "line_layer.h"
+#include "plain_layer.h"
 #include "seen_light.h"
+#include "sky_layer.h"
 #include "surface.h"
 #include "weighted_values.h"
 
@@ -58,22 +60,30 @@ struct Picture::Impl {
         surface(r),
         edges(r, {20, 20, 20}, 1.0),
         outline(r, {255, 60, 220}, 2.5),
-        contours(r,
-                 [this](const Vec3d& origin, const Vec3d& direction) {
-                   return get_picker().pick(origin, direction, state->clips, state->cull);
-                 }),
+        contours(r, [this](const Vec3d& origin,
+                           const Vec3d& direction) { return pick(origin, direction); }),
+        plain(r),
         legend(r) {}
 
   vtkRenderer& renderer;
   Surface surface;
   LineLayer edges, outline;
   ContourLayer contours;
+  PlainLayer plain;
+  std::optional<SkyLayer> sky;
   Legend legend;
+
+  const PlainThings* things = nullptr;
+  std::vector<double> factors;             // of light groups
+  std::vector<std::uint8_t> hidden_thing;  // by thing
+  Triangles thing_triangles;               // that hide what is behind them
+  mutable std::unique_ptr<Picker> thing_picker;
 
   const Mesh* mesh = nullptr;
   std::vector<Field> fields;
   std::optional<PictureState> state;  ///< shown now; absent: everything is to be made again
   bool geometry_changed = true;
+  bool moving = false;
   std::vector<Selection> built_hidden;
   bool built_no_ceilings = false;
   std::vector<std::uint8_t> shown;  ///< by polygon
@@ -82,7 +92,6 @@ struct Picture::Impl {
   std::array<std::optional<Values>, 2> values;  ///< by side, as coloured
   vtkSmartPointer<vtkLookupTable> table;
   Range range;
-  double size = 1.0;                           ///< of the mesh [m]
   std::optional<std::vector<SeenPlace>> seen;  ///< by the camera when last asked
   std::optional<double> automatic_ev;
   std::vector<double> levels;
@@ -97,13 +106,29 @@ struct Picture::Impl {
     triangles = triangulate(*mesh, shown);
     surface.set_geometry(*mesh, triangles, coarsen(*mesh, triangles, kWhileMoving));
     picker.reset();
+    update_things(next);
     seen.reset();
+    update_moving();
     geometry_changed = false;
     built_hidden = next.hidden;
     built_no_ceilings = next.no_ceilings;
-    Eigen::AlignedBox3d box;
-    for (const Vec3d& p : mesh->polygons.points) box.extend(p);
-    size = box.diagonal().norm();
+  }
+  void update_things(const PictureState& next) {
+    if (things == nullptr) return;
+    hidden_thing = hidden_things(*things, *mesh, next.hidden, next.no_ceilings);
+    std::vector<std::uint8_t> hides(things->shapes.polygon_count());
+    for (std::size_t k = 0; k < hides.size(); ++k) {
+      const auto thing = static_cast<std::size_t>(id_at(things->shapes, "object_id", k));
+      hides[k] = hidden_thing[thing] == 0 && !things->is_glass(thing) ? 1 : 0;
+    }
+    thing_triangles = hides.empty() ? Triangles{} : triangulate(things->shapes, hides);
+    thing_picker.reset();
+  }
+  [[nodiscard]] bool is_large() const { return triangles.size() > kWhileMoving; }
+  void update_moving() {
+    surface.moving(moving && is_large());
+    edges.hide(moving && is_large());
+    contours.moving(moving && is_large());
   }
   void hide(const std::vector<std::uint8_t>& polygons) {
     for (std::size_t k = 0; k < shown.size(); ++k) shown[k] = polygons[k] != 0 ? 0 : shown[k];
@@ -114,10 +139,32 @@ struct Picture::Impl {
     return *picker;
   }
 
+  [[nodiscard]] std::optional<Picker::Hit> thing_hit(const Vec3d& origin,
+                                                     const Vec3d& direction) const {
+    if (thing_triangles.size() == 0) return std::nullopt;
+    if (!thing_picker) thing_picker = std::make_unique<Picker>(things->shapes, thing_triangles);
+    return thing_picker->pick(origin, direction, state->clips, false);
+  }
+  /// First thing along a ray: of the mesh, or without values.
+  struct First {
+    std::optional<Picker::Hit> mesh, thing;
+  };
+  [[nodiscard]] First first_hit(const Vec3d& origin, const Vec3d& direction) const {
+    First f{get_picker().pick(origin, direction, state->clips, state->cull),
+            thing_hit(origin, direction)};
+    if (f.mesh && f.thing)
+      (f.thing->position - origin).norm() < (f.mesh->position - origin).norm() ? f.mesh.reset()
+                                                                               : f.thing.reset();
+    return f;
+  }
+  [[nodiscard]] std::optional<Picker::Hit> pick(const Vec3d& origin, const Vec3d& direction) const {
+    return first_hit(origin, direction).mesh;
+  }
+
   const std::vector<SeenPlace>& get_seen() {
     if (!seen)
-      seen = seen_places(get_picker(), *renderer.GetActiveCamera(), renderer.GetTiledAspectRatio(),
-                         *state);
+      seen = seen_places([this](const Vec3d& o, const Vec3d& d) { return pick(o, d); },
+                         *renderer.GetActiveCamera(), renderer.GetTiledAspectRatio());
     return *seen;
   }
 
@@ -165,6 +212,14 @@ struct Picture::Impl {
     }
   }
 
+  void update_plain() {
+    if (things == nullptr || things->model.primitives.empty()) return;
+    const bool true_colour = !fields.empty() && field().look == Look::TrueColour;
+    const std::optional<double> ev = true_colour ? std::optional(exposure()) : std::nullopt;
+    plain.show(*things, {ev, factors, hidden_thing});
+    if (sky) ev ? sky->show(*things, factors, *ev) : sky->hide();
+  }
+
   double exposure() {
     if (state->ev) return *state->ev;
     if (!automatic_ev)
@@ -178,15 +233,20 @@ struct Picture::Impl {
     contours.clear();
     if (!state->contours.any() || field().look == Look::Classes) return;
     Field numbers = field();
-    if (numbers.look == Look::TrueColour) numbers = fields[find_field(fields, "illuminance")];
-    const Range span = numbers.name == field().name ? range : suitable_range(numbers);
+    if (numbers.look == Look::TrueColour)
+      if (const auto lux = std::find_if(fields.begin(), fields.end(),
+                                        [](const Field& f) { return f.name == "illuminance"; });
+          lux != fields.end())
+        numbers = *lux;
+    const bool scale = numbers.look == Look::Scale || numbers.look == Look::Error;
+    const Range span = scale && numbers.name == field().name ? range : suitable_range(numbers);
     levels = state->contours.levels.empty() ? round_levels(span, state->contours.count)
                                             : state->contours.levels;
     for (const Side side : {Side::Front, Side::Back})
       if (has(side) && (side == Side::Front || numbers.sided))
         contours.add(find_contours(*mesh, triangles, side, numbers_of(*mesh, numbers, side, true),
                                    levels, state->clips),
-                     size);
+                     mesh->diagonal);
   }
 
   void update_legend() {
@@ -222,6 +282,13 @@ void Picture::set_mesh(const Mesh& mesh, bool same_geometry) {
   impl_->geometry_changed = impl_->geometry_changed || !same_geometry;
 }
 
+void Picture::set_things(const PlainThings& things) {
+  impl_->things = &things;
+  if (things.has_sky()) impl_->sky.emplace(*impl_->renderer.GetRenderWindow(), impl_->renderer);
+  impl_->geometry_changed = true;
+}
+void Picture::set_factors(const std::vector<double>& factors) { impl_->factors = factors; }
+
 void Picture::show(const PictureState& next) {
   Impl& p = *impl_;
   const PictureState* old = p.state ? &*p.state : nullptr;
@@ -242,7 +309,9 @@ void Picture::show(const PictureState& next) {
     p.surface.clip(next.clips);
     p.edges.clip(next.clips);
     p.outline.clip(next.clips);
+    p.plain.clip(next.clips);
   }
+  if (colours) p.update_plain();
   if (p.fields.empty()) return p.surface.show({true, true, false, true, next.edges});
   if (values) p.update_values();
   if (range) p.update_range();
@@ -259,9 +328,11 @@ void Picture::show(const PictureState& next) {
   }
 }
 
+bool Picture::is_large() const { return impl_->is_large(); }
+
 void Picture::moving(bool coarse) {
-  impl_->surface.moving(coarse);
-  impl_->edges.hide(coarse && impl_->triangles.size() > kWhileMoving);
+  impl_->moving = coarse;
+  impl_->update_moving();
 }
 
 const Field& Picture::field() const { return impl_->field(); }
@@ -298,7 +369,14 @@ double Picture::value_at(const Picker::Hit& hit) const {
 }
 
 std::optional<Picker::Hit> Picture::pick(const Vec3d& origin, const Vec3d& direction) const {
-  return impl_->get_picker().pick(origin, direction, impl_->state->clips, impl_->state->cull);
+  return impl_->pick(origin, direction);
+}
+
+std::optional<std::string> Picture::thing_at(const Vec3d& origin, const Vec3d& direction) const {
+  const auto hit = impl_->first_hit(origin, direction).thing;
+  if (!hit) return std::nullopt;
+  const PlainThings& things = *impl_->things;
+  return things.name(static_cast<std::size_t>(id_at(things.shapes, "object_id", hit->polygon)));
 }
 
 Statistics Picture::statistics() const {

@@ -9,6 +9,7 @@
 #include "mesh.h"
 #include "picker.h"
 #include "picture_state.h"
+#include "plain_things.h"
 #include "statistics.h"
 #include "values.h"
 
@@ -27,8 +28,14 @@ class Picture {
   /// The renderer draws with the next show(). \param mesh  lives longer than this, or until the
   /// next call. \param same_geometry  only arrays have changed.
   void set_mesh(const Mesh& mesh, bool same_geometry);
+  /// What is drawn beside the mesh. \param things  lives longer than this. \param factors  of
+  /// light groups, from the next set_mesh() on.
+  void set_things(const PlainThings& things);
+  void set_factors(const std::vector<double>& factors);
   void show(const PictureState& state);
 
+  /// Is the mesh drawn with fewer triangles while it moves?
+  [[nodiscard]] bool is_large() const;
   /// Large meshes are drawn with fewer triangles while it is true.
   void moving(bool coarse);
 
@@ -50,6 +57,9 @@ class Picture {
   [[nodiscard]] double value_at(const Picker::Hit& hit) const;
   /// First thing that is shown along a ray.
   [[nodiscard]] std::optional<Picker::Hit> pick(const Vec3d& origin, const Vec3d& direction) const;
+  /// Name of a thing without values that is shown first along a ray.
+  [[nodiscard]] std::optional<std::string> thing_at(const Vec3d& origin,
+                                                    const Vec3d& direction) const;
   /// Elements' values of the field on the selected surfaces.
   [[nodiscard]] Statistics statistics() const;
 

@@ -161,6 +161,7 @@ Mesh read_mesh(const std::filesystem::path& path) {
   Mesh mesh = make_mesh(std::move(polygons), file);
   mesh.materials = texts_of(*texts, "material_names");
   mesh.objects = texts_of(*texts, "object_names");
+  mesh.groups = texts_of(*texts, "light_group_names");
   return mesh;
 }
 

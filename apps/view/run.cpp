@@ -9,6 +9,7 @@
 #include "document.h"
 #include "frames.h"
 #include "material/error.h"
+#include "plain_things.h"
 #include "scene/parallel.h"
 #include "stage.h"
 #include "statistics.h"
@@ -45,7 +46,9 @@ void watch_solve(const ViewCommand& c, std::stop_token stop,
   LoadedScene loaded = load_scene(c.files, c.solve);
   warn_of_scene(*loaded.scene, warn);
   require_light(loaded);
-  Document document{bare_mesh(loaded), loaded.views, c.files.front()};
+  Document document{bare_mesh(loaded), loaded.views, c.files.front(), {}};
+  const scene::LightGroups groups = scene::find_light_groups(*loaded.scene, c.solve.groups);
+  document.things = plain_things(loaded, document.mesh, groups_named(*loaded.scene, groups.names));
   add_standard_views(document.mesh, static_cast<double>(c.size[0]) / c.size[1], document.views);
   Window window(std::move(document), c, std::make_unique<LiveSolve>(std::move(loaded), c.solve));
   window.run(std::move(stop));

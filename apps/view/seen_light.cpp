@@ -53,15 +53,14 @@ ViewRay view_ray(vtkCamera& camera, double aspect, double x, double y) {
   return {eye, (ahead + x * h * aspect * right + y * h * up).normalized()};
 }
 
-std::vector<SeenPlace> seen_places(const Picker& picker, vtkCamera& camera, double aspect,
-                                   const PictureState& state) {
+std::vector<SeenPlace> seen_places(const Pick& pick, vtkCamera& camera, double aspect) {
   constexpr int kColumns = 64, kRows = 48;
   std::vector<SeenPlace> seen;
   for (int i = 0; i < kColumns * kRows; ++i) {
     const double x = 2.0 * (i % kColumns + 0.5) / kColumns - 1.0;
     const double y = 2.0 * (i / kColumns + 0.5) / kRows - 1.0;
     const ViewRay ray = view_ray(camera, aspect, x, y);
-    if (const auto hit = picker.pick(ray.origin, ray.direction, state.clips, state.cull))
+    if (const auto hit = pick(ray.origin, ray.direction))
       seen.push_back({hit->polygon, hit->front});
   }
   return seen;

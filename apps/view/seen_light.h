@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "fields.h"
@@ -16,9 +18,11 @@ struct SeenPlace {
   std::size_t polygon;
   bool front;
 };
+/// What is seen along a ray first, if it has values.
+using Pick = std::function<std::optional<Picker::Hit>(const Vec3d& origin, const Vec3d& direction)>;
 /// Along a raster of rays; nothing where they meet nothing. \param aspect  width / height.
-[[nodiscard]] std::vector<SeenPlace> seen_places(const Picker& picker, vtkCamera& camera,
-                                                 double aspect, const PictureState& state);
+[[nodiscard]] std::vector<SeenPlace> seen_places(const Pick& pick, vtkCamera& camera,
+                                                 double aspect);
 
 /// Exposure value for what is seen. Of all surfaces, by area, if there is no light in it.
 [[nodiscard]] double exposure_of(const Mesh& mesh, const Field& radiosity,

@@ -58,17 +58,11 @@ struct Users {
   }
 };
 
-double size_of(const Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3d& p : mesh.polygons.points) box.extend(p);
-  return box.diagonal().norm();
-}
-
 std::vector<std::uint8_t> facet_of(const Mesh& mesh, std::size_t start) {
   const Users users(mesh);
   const Vec3d normal = mesh.area_normal[start].cast<double>().normalized();
   const Vec3d origin = mesh.centre(start);
-  const double slack = 1e-3 * size_of(mesh);
+  const double slack = 1e-3 * mesh.diagonal;
   const double cone = std::cos(5.0 * std::numbers::pi / 180.0);
   const auto belongs = [&](std::size_t k) {
     if (id_at(mesh, "object_id", k) != id_at(mesh, "object_id", start)) return false;

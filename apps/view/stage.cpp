@@ -6,7 +6,9 @@
 #include <vtkRenderer.h>
 #include <vtkWindowToImageFilter.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "camera_rig.h"
 #include "material/error.h"
@@ -21,6 +23,21 @@ vtkSmartPointer<vtkRenderer> make_renderer() {
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
   renderer->SetBackground(0.12, 0.12, 0.12);
   return renderer;
+}
+
+/// An empty picture would leave people to guess. \throws Error.
+void check_clips(const std::vector<Clip>& clips, const Mesh& mesh) {
+  for (const Clip& c : clips) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vec3d& p : mesh.polygons.points) nearest = std::min(nearest, c.normal.dot(p));
+    if (nearest <= c.distance) continue;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "--clip: leaves nothing: along (%.3g, %.3g, %.3g) the mesh begins at %.4g, not "
+                  "below %.4g",
+                  c.normal.x(), c.normal.y(), c.normal.z(), nearest, c.distance);
+    throw Error(text);
+  }
 }
 
 bool same_geometry(const scene::PolygonMesh& a, const scene::PolygonMesh& b) {
@@ -39,6 +56,7 @@ PictureState initial_state(const LookOptions& look, const Mesh& mesh) {
   if (look.range) s.range = Range{(*look.range)[0], (*look.range)[1], look.logarithmic};
   s.ev = look.ev;
   s.contours = look.contours;
+  check_clips(look.clips, mesh);
   s.clips = look.clips;
   s.flat = look.flat;
   s.edges = look.edges;
@@ -73,7 +91,8 @@ Stage::Stage(Document document, const ViewCommand& command, bool off_screen)
   renderer_->SetUseFXAA(off_screen);
   window_->AddRenderer(renderer_);
   overlay_.fit(command.size[1]);
-  picture_->set_mesh(document_.mesh, false);
+  picture_->set_things(document_.things);
+  show_mesh(false);
   look_from(choose_view(command.look.camera, document_.views));
 }
 
@@ -87,13 +106,13 @@ void Stage::look_from(const ViewPoint& view) {
 void Stage::set_weight(std::size_t group, double factor) {
   weights_.set(group, factor);
   weights_.apply(document_.mesh);
-  picture_->set_mesh(document_.mesh, true);
+  show_mesh(true);
 }
 
 void Stage::set_weights(const std::vector<std::pair<std::string, double>>& factors) {
   for (const auto& [group, factor] : factors) weights_.set(group, factor);
   weights_.apply(document_.mesh);
-  picture_->set_mesh(document_.mesh, true);
+  show_mesh(true);
 }
 
 void Stage::set_mesh(Mesh mesh) {
@@ -103,7 +122,7 @@ void Stage::set_mesh(Mesh mesh) {
   weights_ = std::move(weights);
   document_.mesh = std::move(mesh);
   if (!weights_.as_solved()) weights_.apply(document_.mesh);
-  picture_->set_mesh(document_.mesh, same);
+  show_mesh(same);
   if (!same) state.selection = {};
 }
 
@@ -111,7 +130,12 @@ void Stage::start_again(const LookOptions& look) {
   const std::vector<Clip> clips = state.clips;
   state = initial_state(look, document_.mesh);
   state.clips = clips;
-  picture_->set_mesh(document_.mesh, true);
+  show_mesh(true);
+}
+
+void Stage::show_mesh(bool same_geometry) {
+  picture_->set_factors(weights_.factors());
+  picture_->set_mesh(document_.mesh, same_geometry);
 }
 
 void Stage::render_texts(const std::string& message) {

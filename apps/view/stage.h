@@ -55,6 +55,8 @@ class Stage {
   void save(const std::string& file);
 
  private:
+  void show_mesh(bool same_geometry);
+
   Document document_;
   Weights weights_;
   vtkSmartPointer<vtkRenderWindow> window_;

@@ -78,7 +78,7 @@ std::string to_json(const Statistics& s, const std::string& field, const std::st
 }
 
 std::string to_text(const Statistics& s, const std::string& title, const std::string& selection) {
-  std::string text = title + " of " + selection + "\n";
+  std::string text = title + " of " + selection + ", by elements\n";
   if (s.polygons == 0) return text + "nothing known\n";
   text += format("mean %.4g, median %.4g\n", s.mean, s.median);
   text += format("least %.4g, most %.4g\n", s.minimum, s.maximum);

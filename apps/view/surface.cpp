@@ -4,9 +4,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkFloatArray.h>
-#include <vtkIdTypeArray.h>
 #include <vtkLookupTable.h>
-#include <vtkNew.h>
 #include <vtkPlane.h>
 #include <vtkPlaneCollection.h>
 #include <vtkPointData.h>
@@ -16,21 +14,10 @@
 #include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <algorithm>
+#include "vtk_shapes.h"
 
 namespace atrium::view {
 namespace {
-
-vtkSmartPointer<vtkCellArray> cells_of(const Triangles& triangles) {
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetNumberOfValues(3 * static_cast<vtkIdType>(triangles.size()));
-  vtkIdType* next = ids->GetPointer(0);
-  for (const auto& corners : triangles.corners)
-    for (const std::uint32_t c : corners) *next++ = static_cast<vtkIdType>(c);
-  auto cells = vtkSmartPointer<vtkCellArray>::New();
-  cells->SetData(3, ids);
-  return cells;
-}
 
 /// By triangle where values belong to polygons. `get(i)` is tuple i.
 template <class Get, class Set>
@@ -46,13 +33,7 @@ void spread(Place place, std::size_t count, const std::vector<std::uint32_t>& po
 
 vtkSmartPointer<vtkPlaneCollection> planes_of(const std::vector<Clip>& clips) {
   auto planes = vtkSmartPointer<vtkPlaneCollection>::New();
-  for (const Clip& clip : clips) {
-    vtkNew<vtkPlane> plane;
-    const Vec3d origin = clip.distance * clip.normal;
-    plane->SetOrigin(origin.x(), origin.y(), origin.z());
-    plane->SetNormal(-clip.normal.x(), -clip.normal.y(), -clip.normal.z());
-    planes->AddItem(plane);
-  }
+  for (const Clip& clip : clips) planes->AddItem(vtk_plane(clip));
   return planes;
 }
 
@@ -72,14 +53,10 @@ Surface::Surface(vtkRenderer& renderer) {
 }
 
 void Surface::set_geometry(const Mesh& mesh, const Triangles& triangles, const Triangles& coarse) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.polygons.points.size()));
-  for (std::size_t i = 0; i < mesh.polygons.points.size(); ++i)
-    points->SetPoint(static_cast<vtkIdType>(i), mesh.polygons.points[i].data());
+  const auto points = vtk_points(mesh.polygons.points);
   for (const std::size_t detail : {0u, 1u}) {
     const Triangles& t = detail == 0 ? triangles : coarse;
-    const auto cells = cells_of(t);
+    const auto cells = vtk_triangles(t);
     for (Details& side : layers_) {
       side[detail].data->Initialize();
       side[detail].data->SetPoints(points);
@@ -145,11 +122,6 @@ void Surface::colour(Side side, Place place, const std::vector<Colour>& colours)
 
 void Surface::show(const Shown& shown) {
   shown_ = shown;
-  // For all mappers there are. Costs time at every pixel: not without need.
-  if (shown.behind_lines)
-    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
-  else
-    vtkMapper::SetResolveCoincidentTopologyToOff();
   for (const Side side : {Side::Front, Side::Back})
     for (Layer& l : details(side)) {
       vtkProperty* look = l.actor->GetProperty();
@@ -174,6 +146,12 @@ void Surface::moving(bool coarse) {
 }
 
 void Surface::update_visibility() {
+  // For all mappers there are. Costs four fifths of the time in software: not without need, and not
+  // while it moves (contours lie before the surface, edges are gone).
+  if (shown_.behind_lines && !coarse_)
+    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
+  else
+    vtkMapper::SetResolveCoincidentTopologyToOff();
   for (const Side side : {Side::Front, Side::Back})
     for (const std::size_t detail : {0u, 1u})
       details(side)[detail].actor->SetVisibility(

@@ -2,7 +2,6 @@
 
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkCommand.h>
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
@@ -14,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "callback.h"
 #include "camera_rig.h"
 #include "navigation.h"
 #include "seen_light.h"
@@ -22,19 +22,6 @@ namespace atrium::view {
 namespace {
 
 constexpr unsigned long kTimerMs = 50;
-
-class Call : public vtkCommand {
- public:
-  static Call* New() { return new Call; }
-  void Execute(vtkObject*, unsigned long, void*) override { act(); }
-  std::function<void()> act;
-};
-
-vtkSmartPointer<vtkCommand> call(std::function<void()> act) {
-  auto command = vtk::TakeSmartPointer(Call::New());
-  command->act = std::move(act);
-  return command;
-}
 
 /// What a mesh without a solution can show.
 ViewCommand for_bare_mesh(ViewCommand c) {
@@ -62,7 +49,8 @@ Window::Window(Document document, const ViewCommand& command, std::unique_ptr<Me
   interactor_->SetRenderWindow(&stage_.window());
   interactor_->SetInteractorStyle(navigation_);
   navigation_->SetDefaultRenderer(&stage_.renderer());
-  navigation_->hovered = [this] { show_probe(); };
+  navigation_->hovered = [this] { hover(); };
+  navigation_->stepped = [this] { step_coarsely(); };
   connect();
   sliders_ = std::make_unique<Sliders>(
       *interactor_, [this](std::size_t group, double factor) { set_weight(group, factor); });
@@ -83,16 +71,19 @@ void Window::connect() {
   // VTK would take the program down by itself on 'q' and 'e'.
   interactor_->RemoveObservers(vtkCommand::CharEvent);
   interactor_->AddObserver(vtkCommand::KeyPressEvent,
-                           call([this] { key(interactor_->GetKeySym()); }));
-  interactor_->AddObserver(vtkCommand::TimerEvent, call([this] { poll(); }));
-  navigation_->AddObserver(vtkCommand::StartInteractionEvent,
-                           call([this] { stage_.picture().moving(true); }));
-  navigation_->AddObserver(vtkCommand::EndInteractionEvent, call([this] {
+                           callback([this] { key(interactor_->GetKeySym()); }));
+  interactor_->AddObserver(vtkCommand::TimerEvent, callback([this] { poll(); }));
+  navigation_->AddObserver(vtkCommand::StartInteractionEvent, callback([this] {
+                             coarse_since_.reset();
+                             stage_.picture().moving(true);
+                           }));
+  navigation_->AddObserver(vtkCommand::EndInteractionEvent, callback([this] {
                              stage_.picture().moving(false);
                              stage_.window().Render();
                            }));
-  interactor_->AddObserver(vtkCommand::ConfigureEvent,
-                           call([this] { stage_.overlay().fit(stage_.window().GetSize()[1]); }));
+  interactor_->AddObserver(vtkCommand::ConfigureEvent, callback([this] {
+                             stage_.overlay().fit(stage_.window().GetSize()[1]);
+                           }));
 }
 
 void Window::run(std::stop_token stop) {
@@ -106,6 +97,7 @@ bool Window::walking() const { return navigation_->walking; }
 
 void Window::poll() {
   if (stop_.stop_requested()) return interactor_->TerminateApp();
+  settle();
   if (!source_) return;
   try {
     std::optional<Mesh> mesh = source_->take();
@@ -149,7 +141,7 @@ void Window::redraw() {
 }
 
 void Window::key(const std::string& symbol) {
-  const double step = std::min(0.3, 0.03 * size());
+  const double step = std::min(0.3, 0.03 * stage_.mesh().diagonal);
   if (symbol == "Up") return walk_step(step, 0.0);
   if (symbol == "Down") return walk_step(-step, 0.0);
   if (symbol == "Right") return walk_step(0.0, step);
@@ -298,12 +290,6 @@ void Window::change_contours(int more) {
   }
 }
 
-double Window::size() const {
-  Eigen::AlignedBox3d box;
-  for (const Vec3d& p : stage_.mesh().polygons.points) box.extend(p);
-  return box.diagonal().norm();
-}
-
 void Window::toggle_clip() {
   std::vector<Clip>& clips = stage_.state.clips;
   const auto level = std::find_if(clips.begin(), clips.end(),
@@ -317,30 +303,69 @@ void Window::toggle_clip() {
     message_ = "nothing under the cursor to cut at";
     return;
   }
-  clips.push_back({Vec3d::UnitY(), hit->position.y() - 1e-4 * size()});
+  clips.push_back({Vec3d::UnitY(), hit->position.y() - 1e-4 * stage_.mesh().diagonal});
 }
 
 void Window::move_up(double sign) {
-  const double step = sign * std::min(0.1, 0.01 * size());
-  if (navigation_->walking) return walk(*stage_.renderer().GetActiveCamera(), 0.0, 0.0, step);
+  const double step = sign * std::min(0.1, 0.01 * stage_.mesh().diagonal);
+  if (navigation_->walking) {
+    step_coarsely();
+    return walk(*stage_.renderer().GetActiveCamera(), 0.0, 0.0, step);
+  }
   for (Clip& c : stage_.state.clips)
     if (c.normal == Vec3d::UnitY()) c.distance += step;
 }
 
 void Window::walk_step(double ahead, double right) {
   if (!navigation_->walking) return;
+  step_coarsely();
   walk(*stage_.renderer().GetActiveCamera(), ahead, right, 0.0);
   redraw();
 }
 
+/// Wheel and arrow keys come one by one: until none has come for a while, as while the mouse is
+/// held.
+void Window::step_coarsely() {
+  if (!stage_.picture().is_large()) return;
+  stage_.picture().moving(true);
+  coarse_since_ = Clock::now();
+}
+
+void Window::settle() {
+  constexpr auto kRest = std::chrono::milliseconds(250);
+  const auto rests = [&](const std::optional<Clock::time_point>& since) {
+    return since && Clock::now() - *since >= kRest;
+  };
+  if (rests(coarse_since_)) {
+    coarse_since_.reset();
+    stage_.picture().moving(false);
+    stage_.window().Render();
+  }
+  if (rests(hovered_since_)) {
+    hovered_since_.reset();
+    show_probe();
+  }
+}
+
+void Window::hover() {
+  if (stage_.picture().is_large())
+    hovered_since_ = Clock::now();
+  else
+    show_probe();
+}
+
 std::optional<Picker::Hit> Window::under_cursor() {
+  const ViewRay ray = cursor_ray();
+  return stage_.picture().pick(ray.origin, ray.direction);
+}
+
+ViewRay Window::cursor_ray() {
   const int* at = interactor_->GetEventPosition();
   const int* extent = stage_.window().GetSize();
   const double x = 2.0 * (at[0] + 0.5) / extent[0] - 1.0;
   const double y = 2.0 * (at[1] + 0.5) / extent[1] - 1.0;
-  const ViewRay ray = view_ray(*stage_.renderer().GetActiveCamera(),
-                               static_cast<double>(extent[0]) / extent[1], x, y);
-  return stage_.picture().pick(ray.origin, ray.direction);
+  return view_ray(*stage_.renderer().GetActiveCamera(), static_cast<double>(extent[0]) / extent[1],
+                  x, y);
 }
 
 void Window::select(Selection::Kind kind) {
@@ -358,8 +383,11 @@ void Window::select(Selection::Kind kind) {
 
 void Window::show_probe() {
   if (stage_.picture().fields().empty()) return;
-  const auto hit = under_cursor();
+  const ViewRay ray = cursor_ray();
+  const auto hit = stage_.picture().pick(ray.origin, ray.direction);
   std::string text;
+  if (const auto thing = stage_.picture().thing_at(ray.origin, ray.direction))
+    text = (thing->empty() ? "this" : *thing) + ": has no elements, so no values";
   if (hit) {
     if (!probe_) probe_.emplace(stage_.mesh());
     text = probe_->describe(stage_.mesh(), stage_.picture().field(), *hit,

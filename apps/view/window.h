@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "keys.h"
 #include "mesh_source.h"
 #include "probe.h"
+#include "seen_light.h"
 #include "sliders.h"
 #include "stage.h"
 
@@ -41,8 +43,11 @@ class Window {
   void act(Action action);
   /// Takes what is new from the source, and draws. Called by a timer.
   void poll();
+  /// Nothing of a large mesh waits for being drawn in full, nor the probe for the cursor to rest.
+  [[nodiscard]] bool at_rest() const { return !coarse_since_ && !hovered_since_; }
 
  private:
+  using Clock = std::chrono::steady_clock;
   void connect();
   void key(const std::string& symbol);
   void change_field(std::size_t step);
@@ -58,10 +63,13 @@ class Window {
   void save_picture();
   void set_weight(std::size_t group, double factor);
   void take_mesh(Mesh mesh);
+  void step_coarsely();
+  void settle();
+  void hover();
   void show_probe();
   void redraw();
+  [[nodiscard]] ViewRay cursor_ray();
   [[nodiscard]] std::optional<Picker::Hit> under_cursor();
-  [[nodiscard]] double size() const;  ///< of the mesh [m]
 
   ViewCommand command_;
   std::unique_ptr<MeshSource> source_;
@@ -77,6 +85,9 @@ class Window {
   ViewPoint view_;
   ContourChoice last_contours_{8, {}};
   std::string message_;
+  /// When a large mesh was last moved by a step, and when the cursor last moved over it: a full
+  /// picture takes too long to be drawn at every event.
+  std::optional<Clock::time_point> coarse_since_, hovered_since_;
   std::exception_ptr failure_;
   std::stop_token stop_;
 };

@@ -207,7 +207,10 @@ class Baker {
       if (!sides[side]) continue;
       BakedModel::Material look;
       const material::Material& m = scene_.material_of(r.object);
-      if (!options_.merge_objects) look.name = m.name;
+      if (!options_.merge_objects) {
+        look.name = m.name;
+        plain_.set_gloss(r.object, look);
+      }
       if (charts_) {
         look.atlas = true;
         look.alpha_cutoff = m.alpha_cutoff > 0.0f ? 0.5f : 0.0f;
@@ -302,12 +305,8 @@ class Baker {
       Primitive p = plain_.bake(ObjectId(o), options_.merge_objects);
       if (!p.indices.empty()) append(std::move(p), ObjectId(o));
     }
-    if (options_.backdrop && scene_.environment) {
-      const std::vector<std::uint32_t> group = emission_groups(scene_, groups_);
-      const std::uint32_t own = group.empty() ? 0 : group.back();
-      const double factor = groups_.empty() ? 1.0 : groups_[own].factor;
-      model_.primitives.push_back(plain_.bake_sky(factor, own));
-    }
+    if (options_.backdrop && scene_.environment)
+      model_.primitives.push_back(plain_.bake_sky(groups_));
   }
 
   void append(Primitive&& from, ObjectId object) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
+#include "radiosity/bake.h"
 #include "scene/light_sampler.h"
 
 namespace atrium::radiosity {
@@ -72,6 +74,15 @@ BakedModel::Material PlainBaker<N>::look(ObjectId object) const {
 }
 
 template <int N>
+void PlainBaker<N>::set_gloss(ObjectId object, BakedModel::Material& look) const {
+  const auto& resolved = surfaces_.material(scene_.objects[object.value].material);
+  if (!resolved.traits.mirror && !resolved.traits.rough) return;
+  const Material& m = *resolved.source;
+  look.gloss = unit_range(basis_.to_rgb<N>(resolved.reflectance_zero) * static_cast<float>(m.k_rg));
+  look.roughness = roughness_of(m);
+}
+
+template <int N>
 void PlainBaker<N>::set_light(Primitive& p, ObjectId object, const KeptPicture& picture) const {
   Spectrum<N> emission = surfaces_.emission(object);
   if (picture.of == KeptPicture::Of::Body && picture.mean > 0.0f)
@@ -112,7 +123,10 @@ BakedModel::Primitive PlainBaker<N>::bake(ObjectId object, bool merged) const {
 }
 
 template <int N>
-BakedModel::Primitive PlainBaker<N>::bake_sky(double factor, std::uint32_t group) const {
+BakedModel::Primitive PlainBaker<N>::bake_sky(std::span<const scene::GroupField> groups) const {
+  const std::vector<std::uint32_t> by_source = emission_groups(scene_, groups);
+  const std::uint32_t group = by_source.empty() ? 0 : by_source.back();
+  const double factor = groups.empty() ? 1.0 : groups[group].factor;
   constexpr int kRings = 48;
   constexpr int kSegments = 96;
   const scene::LightSampler<N> lights(scene_, basis_, {});
@@ -146,6 +160,39 @@ BakedModel::Primitive PlainBaker<N>::bake_sky(double factor, std::uint32_t group
         p.indices.insert(p.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
     }
   return p;
+}
+
+namespace {
+
+template <int N>
+BakedModel bake_plain_lanes(const scene::Scene& scene, const material::SpectralBasis& basis,
+                            const std::vector<std::uint8_t>& with_elements,
+                            std::span<const scene::GroupField> groups) {
+  const SurfaceReader<N> surfaces(scene, basis, groups);
+  BakedModel model;
+  for (const scene::GroupField& g : groups) model.group_names.push_back(g.name);
+  if (groups.empty()) model.group_names = {"all"};
+  BakedLooks looks(scene);
+  const PlainBaker<N> plain(scene, basis, surfaces, looks, model.group_names.size());
+  for (std::size_t o = 0; o < scene.objects.size(); ++o)
+    if (with_elements[o] == 0) model.primitives.push_back(plain.bake(ObjectId(o), false));
+  if (scene.environment) model.primitives.push_back(plain.bake_sky(groups));
+  looks.move_to(model);
+  model.origin = scene.origin;
+  model.unit = scene.unit;
+  return model;
+}
+
+}  // namespace
+
+BakedModel bake_plain(const scene::Scene& scene, const material::SpectralBasis& basis,
+                      const std::vector<std::uint8_t>& with_elements,
+                      std::span<const scene::GroupField> groups) {
+  if (with_elements.size() != scene.objects.size())
+    throw std::invalid_argument("bake_plain: one number per object is needed");
+  return with_lanes(basis.lanes(), [&](auto lanes) {
+    return bake_plain_lanes<lanes()>(scene, basis, with_elements, groups);
+  });
 }
 
 template class PlainBaker<1>;

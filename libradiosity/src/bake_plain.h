@@ -15,8 +15,10 @@ class PlainBaker {
 
   /// \param merged  looks that do not depend on the object are one material, "plain".
   [[nodiscard]] Primitive bake(scene::ObjectId object, bool merged) const;
-  /// A sphere round the scene that shows the environment from inside.
-  [[nodiscard]] Primitive bake_sky(double factor, std::uint32_t group) const;
+  /// What is left out of a surface that is diffuse, too: reflectance and roughness.
+  void set_gloss(scene::ObjectId object, scene::BakedModel::Material& look) const;
+  /// A sphere round the scene that shows the environment from inside, dimmed as its group is.
+  [[nodiscard]] Primitive bake_sky(std::span<const scene::GroupField> groups) const;
 
  private:
   void set_light(Primitive& p, scene::ObjectId object, const KeptPicture& picture) const;

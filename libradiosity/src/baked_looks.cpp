@@ -15,7 +15,7 @@ bool same_place(const TextureSlot& a, const TextureSlot& b) {
 
 auto key(const scene::BakedModel::Material& m) {
   return std::tie(m.name, m.kind, m.texture, m.atlas, m.alpha_cutoff, m.double_sided, m.color.lane,
-                  m.roughness, m.ior, m.thickness, m.attenuation.lane);
+                  m.roughness, m.gloss.lane, m.ior, m.thickness, m.attenuation.lane);
 }
 
 /// White with the alpha of a picture.

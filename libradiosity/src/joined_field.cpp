@@ -64,6 +64,7 @@ JoinedField<N>::JoinedField(const Scene& scene, const Elements& elements, const 
       element_of[p] = e;
   for (const std::uint32_t piece : mesh_.piece) element_of_.push_back(element_of[piece]);
   find_users();
+  blend_.emplace(mesh_, elements, element_of_);
   add_source(field.irradiance, field.body_irradiance, 1.0);
   for (const scene::GroupField& g : groups) add_source(g.irradiance, g.body_irradiance, g.factor);
   share_corners();
@@ -148,20 +149,33 @@ void JoinedField<N>::at_point(std::size_t point, std::vector<BothLights<N>>& lig
     if (chosen.empty()) chosen.push_back(element_of_[polygons.front()]);
     const float share = 1.0f / static_cast<float>(chosen.size());
     for (const std::uint32_t e : chosen) {
+      if (blend_->is_clump(e)) {
+        add_clump(e, point, side, share, light);
+        continue;
+      }
       const std::array<float, 4> weight = corner_weights(field_, e, mesh_.position[point]);
       for (std::size_t s = 0; s < sources_.size(); ++s)
         for (std::size_t k = 0; k < 4; ++k) {
           const SideLight<N> v =
               sources_[s].corners.at(2 * std::size_t{cells_.of_element[e][k]} + side);
-          SideLight<N>& sum = light[s][side];
-          const float w = share * weight[k];
-          sum.direct += w * v.direct;
-          sum.caustic += w * v.caustic;
-          sum.indirect += w * v.indirect;
-          sum.body += w * v.body;
+          accumulate(light[s][side], v, share * weight[k]);
         }
     }
   }
+}
+
+template <int N>
+void JoinedField<N>::add_clump(std::uint32_t clump, std::size_t point, std::size_t side,
+                               float share, std::vector<BothLights<N>>& light) const {
+  ClumpBlend::Weights weights;
+  blend_->weights(
+      clump, mesh_.position[point], blend_->normal_of(polygons_at(point)),
+      [&](std::uint32_t e) { return field_.valid[2 * std::size_t{e} + side] != 0; }, weights);
+  for (const auto& [e, weight] : weights)
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      const SideLight<N> v = sources_[s].elements.at(2 * std::size_t{e} + side);
+      accumulate(light[s][side], v, share * weight);
+    }
 }
 
 template class JoinedField<1>;

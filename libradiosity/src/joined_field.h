@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "clump_blend.h"
 #include "joined_mesh.h"
 #include "radiosity/corners.h"
 #include "surface_reader.h"
@@ -16,6 +18,13 @@ struct SideLight {
   Spectrum<N> direct, caustic, indirect, body;
   [[nodiscard]] Spectrum<N> total() const { return direct + caustic + indirect; }
 };
+template <int N>
+void accumulate(SideLight<N>& sum, const SideLight<N>& light, float weight) {
+  sum.direct += weight * light.direct;
+  sum.caustic += weight * light.caustic;
+  sum.indirect += weight * light.indirect;
+  sum.body += weight * light.body;
+}
 template <int N>
 using BothLights = std::array<SideLight<N>, 2>;  ///< front, back
 template <int N>
@@ -81,7 +90,7 @@ class JoinedField {
   /// Light of the element.
   [[nodiscard]] BothLights<N> at_polygon(std::size_t polygon, std::size_t source) const;
   /// Light at a point: mean over the facets that meet, each by the first of its elements whose side
-  /// is known. \param light  gets one entry per source.
+  /// is known; clumps are blended with their neighbours. \param light  gets one entry per source.
   void at_point(std::size_t point, std::vector<BothLights<N>>& light) const;
 
  private:
@@ -94,6 +103,8 @@ class JoinedField {
   };
   void add_source(const scene::SurfaceField::Quantities& irradiance,
                   const scene::SurfaceField::Quantities& body, double factor);
+  void add_clump(std::uint32_t clump, std::size_t point, std::size_t side, float share,
+                 std::vector<BothLights<N>>& light) const;
   void share_corners();
   void find_users();
 
@@ -105,6 +116,7 @@ class JoinedField {
   std::vector<Source> sources_;
   std::vector<std::uint32_t> element_of_;          // by polygon
   std::vector<std::uint32_t> first_user_, users_;  // by point
+  std::optional<ClumpBlend> blend_;
 };
 
 }  // namespace atrium::radiosity

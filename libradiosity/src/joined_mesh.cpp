@@ -264,8 +264,10 @@ class Joiner {
     const auto normal = [](const SurfaceField::Facet& x) {
       return Vec3f(x.axis_u.cross(x.axis_v).normalized());
     };
-    constexpr float kOnePlane = 0.9998f;  // 1 degree
-    if (f.clump != 0 || g.clump != 0 || normal(f).dot(normal(g)) > kOnePlane) return false;
+    constexpr float kOnePlane = 0.9998f;               // 1 degree
+    const bool clumps = f.clump != 0 && g.clump != 0;  // whose own planes mean little
+    if (!clumps && (f.clump != 0 || g.clump != 0 || normal(f).dot(normal(g)) > kOnePlane))
+      return false;
     const scene::SurfacePoint p = point_of(piece_a, position);
     const scene::SurfacePoint q = point_of(piece_b, position);
     return static_cast<double>(p.ng.dot(q.ng)) >= cos_crease_ && p.ns.dot(q.ns) > kOnePlane;

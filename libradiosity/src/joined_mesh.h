@@ -24,7 +24,7 @@ struct JoinOptions {
 
 /// Values continue within a facet, and into another facet of the object across a shared edge if
 /// the triangles there bend by at most the crease angle and have the same shading normal. Facets
-/// in one plane do not continue: something parts them. Nor do clumps.
+/// in one plane do not continue: something parts them. Clumps continue into clumps alone.
 /// Pieces narrower than what coordinates resolve vanish.
 [[nodiscard]] JoinedMesh join_pieces(const scene::Scene& scene, const Elements& elements,
                                      const JoinOptions& options = {});

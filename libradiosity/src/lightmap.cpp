@@ -13,14 +13,6 @@ using scene::BakedModel;
 
 namespace {
 
-template <int N>
-void accumulate(SideLight<N>& sum, const SideLight<N>& light, float weight) {
-  sum.direct += weight * light.direct;
-  sum.caustic += weight * light.caustic;
-  sum.indirect += weight * light.indirect;
-  sum.body += weight * light.body;
-}
-
 /// Beyond a triangle light goes on as a plane, but not below 0.
 template <int N>
 Spectrum<N> not_negative(Spectrum<N> v) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scene/mesh_io.h"
+#include "support/grid_wall.h"
 
 namespace atrium::test {
 
@@ -29,22 +30,13 @@ class ViewRoom {
   using Array = scene::PolygonMesh::Array;
 
   void add_wall(int object, const Vec3d& corner, const Vec3d& u, const Vec3d& v, int nu, int nv) {
-    const auto first = static_cast<std::uint32_t>(mesh_.points.size());
-    for (int j = 0; j <= nv; ++j)
-      for (int i = 0; i <= nu; ++i) mesh_.points.push_back(corner + u * i / nu + v * j / nv);
-    const auto at = [&](int i, int j) {
-      return first + static_cast<std::uint32_t>(j * (nu + 1) + i);
-    };
-    for (int j = 0; j < nv; ++j)
-      for (int i = 0; i < nu; ++i) {
-        for (const std::uint32_t p : {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)})
-          mesh_.polygon_points.push_back(p);
-        mesh_.polygon_sizes.push_back(4);
-        object_.values.push_back(static_cast<float>(object));
-        element_.values.push_back(static_cast<float>(element_.values.size()));
-        level_.values.push_back(static_cast<float>(object));
-        error_.values.push_back(static_cast<float>(1 + i));
-      }
+    add_grid_wall(mesh_, corner, u, v, nu, nv);
+    for (int k = 0; k < nu * nv; ++k) {
+      object_.values.push_back(static_cast<float>(object));
+      element_.values.push_back(static_cast<float>(element_.values.size()));
+      level_.values.push_back(static_cast<float>(object));
+      error_.values.push_back(static_cast<float>(1 + k % nu));
+    }
   }
 
   /// \param lamp, strip  factors.

@@ -39,4 +39,17 @@ struct BakeOptions {
                                      std::span<const scene::GroupField> groups = {},
                                      const BakeOptions& options = {});
 
+/// What bake() would show beside the surfaces with elements: for every object without any, in their
+/// order, one primitive (lamps that reflect nothing, black things, mirrors, metals, glass), and
+/// last the environment as a dome named "sky", if the scene has one. Light is by group, too.
+///
+/// \param with_elements  by object: is there a baked surface of it already?
+/// \param groups  names and factors count; empty: one group, "all".
+/// \throws std::invalid_argument  if with_elements is of another scene.
+/// \throws Error  if the scene's groups have other names.
+[[nodiscard]] scene::BakedModel bake_plain(const scene::Scene& scene,
+                                           const material::SpectralBasis& basis,
+                                           const std::vector<std::uint8_t>& with_elements,
+                                           std::span<const scene::GroupField> groups = {});
+
 }  // namespace atrium::radiosity

@@ -38,6 +38,15 @@ float encode_srgb(float v) {
   return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
 }
 
+/// In sRGB and 8 bits, up or down by chance so that the mean over texels is right: rounded values
+/// show as bands wherever light changes slowly in the dark.
+std::uint8_t dithered(float linear, std::uint64_t place) {
+  std::uint64_t h = (place + 1) * 0x9e3779b97f4a7c15ULL;
+  h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93ULL;
+  const auto chance = static_cast<float>((h ^ (h >> 32)) & 0xffffffU) * 0x1p-24f;
+  return static_cast<std::uint8_t>(std::min(255.0f, 255.0f * encode_srgb(linear) + chance));
+}
+
 class Encoder {
  public:
   Encoder(const BakedModel& model, const GlbOptions& options)
@@ -141,8 +150,7 @@ class Encoder {
     t.pixels.reserve(atlas.radiance.size() * static_cast<std::size_t>(t.channels));
     for (std::size_t i = 0; i < atlas.radiance.size(); ++i) {
       const Rgb c = relative(atlas.radiance[i]);
-      for (const float v : c.lane)
-        t.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * encode_srgb(v))));
+      for (std::size_t k = 0; k < 3; ++k) t.pixels.push_back(dithered(c.lane[k], 3 * i + k));
       if (t.channels == 4) t.pixels.push_back(atlas.alpha[i]);
     }
     return t;
@@ -170,7 +178,8 @@ class Encoder {
     out.doubleSided = m.double_sided;
     auto& pbr = out.pbrMetallicRoughness;
     pbr.metallicFactor = m.kind == Kind::Metal ? 1.0 : 0.0;
-    pbr.roughnessFactor = m.kind == Kind::Unlit ? 0.9 : static_cast<double>(m.roughness);
+    const bool matte = m.kind == Kind::Unlit && !(m.gloss.max() > 0.0f);
+    pbr.roughnessFactor = matte ? 0.9 : static_cast<double>(m.roughness);
     pbr.baseColorFactor = {1.0, 1.0, 1.0, 1.0};
     if (m.kind != Kind::Unlit)
       for (int k = 0; k < 3; ++k)
@@ -181,6 +190,12 @@ class Encoder {
       out.alphaCutoff = static_cast<double>(m.alpha_cutoff);
     }
     if (m.kind == Kind::Unlit) extend(out, "KHR_materials_unlit", {});
+    // No extension of gloss may stand beside unlit: for programs that know it, and for people.
+    if (m.kind == Kind::Unlit && !matte)
+      out.extras = Value(Value::Object{
+          {"atrium",
+           Value(Value::Object{{"lobe_reflectance", rgb_value(m.gloss)},
+                               {"lobe_roughness", Value(static_cast<double>(m.roughness))}})}});
     if (m.kind == Kind::Glass) {
       extend(out, "KHR_materials_transmission", {{"transmissionFactor", Value(1.0)}});
       extend(out, "KHR_materials_ior", {{"ior", Value(static_cast<double>(m.ior))}});
@@ -212,6 +227,7 @@ class Encoder {
         out.attributes["_LIGHT_" + std::to_string(g)] = group_light(p.groups[g], codes_[g]);
     } else if (!p.radiance.empty()) {
       out.attributes["COLOR_0"] = colors(p.radiance);
+      add_group_colors(p, out);
     }
     out.indices = indices(p);
     tinygltf::Mesh mesh;
@@ -288,6 +304,14 @@ class Encoder {
       values.push_back(code[1].encode(static_cast<double>(v.illuminance)));
     }
     return buffer_.add_accessor(values, {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 4, true});
+  }
+
+  void add_group_colors(const BakedModel::Primitive& p, tinygltf::Primitive& out) {
+    std::vector<Rgb> radiance(p.positions.size());
+    for (std::size_t g = 0; g < p.groups.size(); ++g) {
+      for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = p.groups[g][i].radiance;
+      out.attributes["COLOR_" + std::to_string(g + 1)] = colors(radiance);
+    }
   }
 
   int indices(const BakedModel::Primitive& p) {

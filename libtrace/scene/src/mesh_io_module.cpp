@@ -132,8 +132,9 @@ std::string write_with(Data* data, const std::string& file) {
   writer->SetInputData(data);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);  // 0.6 of the time of the default for 1 % more bytes
+  // A tenth of zlib's time to write and a quarter to read, for a third more bytes.
+  writer->SetCompressorTypeToLZ4();
+  writer->SetCompressionLevel(9);
   if (writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError) return {};
   return vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode());
 }

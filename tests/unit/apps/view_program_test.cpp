@@ -60,6 +60,7 @@ TEST_F(ViewRun, WrongUsageIsOneLineAndCode2) {
   expect_view_error(view(folder, "room.vtp --log --range 0,5"), 2, "--range 0,5");
   expect_view_error(view(folder, "room.vtp --side top"), 2, "--side");
   expect_view_error(view(folder, "room.vtp --camera kitchen --screenshot a.png"), 2, "overview");
+  expect_view_error(view(folder, "room.vtp --clip 'y>3.5' --screenshot a.png"), 2, "--clip");
   expect_view_error(view(folder, "room.vtp --weights sun=1 --screenshot a.png"), 2, "sun");
   expect_view_error(view(folder, "room.vtp --hide object=77 --screenshot a.png"), 2, "object=77");
   expect_view_error(view(folder, "room.vtp --statistics object=77"), 2, "object=77");
@@ -96,10 +97,27 @@ TEST_F(ViewRun, StatisticsNeedNoDisplayAndFollowWeights) {
 
 // A file may stand behind an option that may be repeated.
 TEST_F(ViewRun, RepeatedOptionsTakeOneValueEach) {
+  ATRIUM_NEEDS_DISPLAY();
   const Result r = view(folder,
-                        "--statistics all --field illuminance --weights lamp=0 --weights strip=1 "
-                        "--hide object=0 --clip 'y<2' room.vtp",
-                        "unset DISPLAY; ");
+                        "--screenshot a.png --field illuminance --weights lamp=0 --weights strip=1 "
+                        "--hide object=0 --clip 'y<2' room.vtp");
+  EXPECT_EQ(r.code, 0) << r.err;
+}
+
+TEST_F(ViewRun, OptionsWithoutEffectAreRefused) {
+  expect_view_error(view(folder, "room.vtp --light-groups"), 2, "--light-groups");
+  expect_view_error(view(folder, "room.vtp --no-pane-detection"), 2, "--no-pane-detection");
+  expect_view_error(view(folder, "room.vtp --statistics all --clip 'y<2'"), 2, "--clip");
+}
+
+// A foreign file with radiosity alone: contours are of what there is.
+TEST_F(ViewRun, ContoursOfRadiosityWithoutIrradiance) {
+  ATRIUM_NEEDS_DISPLAY();
+  auto mesh = ViewRoom::mesh();
+  for (auto* arrays : {&mesh.cell_arrays, &mesh.point_arrays})
+    std::erase_if(*arrays, [](const auto& a) { return a.name.find("irradiance") == 0; });
+  atrium::scene::write_polygon_mesh(mesh, folder / "b.vtp");
+  const Result r = view(folder, "b.vtp --contours 5 --screenshot a.png --size 80x60");
   EXPECT_EQ(r.code, 0) << r.err;
 }
 

@@ -4,6 +4,7 @@
 #include <vtkNew.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 
 #include "camera_rig.h"
 #include "material/error.h"
+#include "support/grid_wall.h"
 #include "support/lit_floor.h"
 #include "support/temp_folder.h"
 #include "support/view_room.h"
@@ -132,6 +134,49 @@ TEST(ViewWindow, EveryKeyIsListedOnceAndDoesNoHarm) {
     user.key(k.symbol);
   }
   user.key("nonsense");
+}
+
+/// 250,000 triangles: enough to be drawn with fewer while it moves.
+Document large_document() {
+  scene::PolygonMesh polygons;
+  test::add_grid_wall(polygons, {0, 0, 4}, {4, 0, 0}, {0, 0, -4}, 360, 350);
+  Array lux{"irradiance", 3, {}};
+  for (const Vec3d& p : polygons.points)
+    for (int c = 0; c < 3; ++c) lux.values.push_back(static_cast<float>(100.0 + 50.0 * p.x()));
+  polygons.point_arrays = {std::move(lux)};
+  Document d;
+  d.mesh = make_mesh(std::move(polygons), "floor");
+  add_standard_views(d.mesh, 4.0 / 3.0, d.views);
+  return d;
+}
+
+// A full picture of a large mesh takes its time: wheel and arrows are followed by few triangles at
+// once, and the rest comes when they have stopped; the probe when the cursor rests.
+TEST(ViewWindow, LargeMeshesAnswerAtOnceAndSettle) {
+  ATRIUM_NEEDS_DISPLAY();
+  ViewCommand c = command("illuminance");
+  c.look.contours.count = 5;
+  Window window(large_document(), c);
+  window.stage().look_from(choose_view("2,3,6:2,0,2:50", {}));
+  window.stage().render();
+  ASSERT_TRUE(window.stage().picture().is_large());
+  EXPECT_TRUE(window.at_rest());
+  EXPECT_GT(window.stage().picture().label_count(), 0U);
+  window.interactor().SetEventInformation(kWidth / 2, kHeight / 2);
+  window.interactor().InvokeEvent(vtkCommand::MouseWheelForwardEvent);
+  EXPECT_FALSE(window.at_rest());
+  EXPECT_EQ(window.stage().picture().label_count(), 0U);
+  window.poll();
+  EXPECT_FALSE(window.at_rest());
+  std::this_thread::sleep_for(std::chrono::milliseconds(260));
+  window.poll();
+  EXPECT_TRUE(window.at_rest());
+  EXPECT_GT(window.stage().picture().label_count(), 0U);
+  window.interactor().InvokeEvent(vtkCommand::MouseMoveEvent);
+  EXPECT_EQ(window.stage().overlay().probe(), "");
+  std::this_thread::sleep_for(std::chrono::milliseconds(260));
+  window.poll();
+  EXPECT_NE(window.stage().overlay().probe().find("illuminance [lx]: "), std::string::npos);
 }
 
 TEST(ViewWindow, ContoursComeWithLabels) {
@@ -390,12 +435,92 @@ LoadedScene lit_floor(const test::TempFolder& folder) {
   return load_scene({(folder / "lit.yaml").string()}, {});
 }
 
+constexpr const char* kThings = R"(atrium: 1
+materials:
+  white: {body: 0.5}
+  lamp: {body: 0, emission: {radiance: 100}}
+  silver: {ior: Ag}
+  glass: {ior: 1.5, medium: pane}
+objects:
+  - {name: floor, material: white, polygon: [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]}
+  - {name: lamp, light_group: lamp, material: lamp,
+     polygon: [[-0.2, 2, -0.2], [0.2, 2, -0.2], [0.2, 2, 0.2], [-0.2, 2, 0.2]]}
+  - {name: mirror, material: silver, polygon: [[0.2, 0.5, -1], [1, 0.5, -1], [1, 0.5, 1], [0.2, 0.5, 1]]}
+  - {name: pane, material: glass, polygon: [[-1, 0.5, -1], [-0.2, 0.5, -1], [-0.2, 0.5, 1], [-1, 0.5, 1]]}
+environment: {radiance: 3, color: [0.2, 0.5, 1], light_group: sky}
+)";
+
+struct Picked {
+  std::uint8_t r, g, b;
+};
+/// The middle of the window, or near it.
+Picked pixel(Window& window, int dx = 0, int dy = 0) {
+  vtkNew<vtkUnsignedCharArray> rgb;
+  const int x = kWidth / 2 + dx, y = kHeight / 2 + dy;
+  window.stage().window().GetPixelData(x, y, x, y, 0, rgb);
+  return {rgb->GetValue(0), rgb->GetValue(1), rgb->GetValue(2)};
+}
+
+/// What has no elements is there: it can be seen, hides what is behind it, dims with its group and
+/// has no values.
+TEST(ViewWindow, ThingsWithoutElementsAreDrawnPlainly) {
+  ATRIUM_NEEDS_DISPLAY();
+  const test::TempFolder folder;
+  folder.write("things.yaml", kThings);
+  ViewCommand c = command("radiosity");
+  c.files = {(folder / "things.yaml").string()};
+  c.look.camera = "0,6,0.01:0,0,0:30";
+  c.look.ev = 3.0;
+  Document d = load_document(c, {}, [](const std::string&) {});
+  ASSERT_EQ(d.things.size(), 3U);
+  EXPECT_EQ(d.things.object, (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_TRUE(d.things.has_sky());
+  EXPECT_TRUE(d.things.is_glass(2));
+  Window window(std::move(d), c);
+  const auto look = [&](const std::string& camera) {
+    window.stage().look_from(choose_view(camera, window.stage().document().views));
+    window.stage().render();
+  };
+  const auto thing = [&](const std::string& camera) {
+    look(camera);
+    const ViewRay ray = view_ray(*window.stage().renderer().GetActiveCamera(),
+                                 static_cast<double>(kWidth) / kHeight, 0.0, 0.0);
+    const bool values = window.stage().picture().pick(ray.origin, ray.direction).has_value();
+    return window.stage().picture().thing_at(ray.origin, ray.direction).value_or("") +
+           (values ? " and values" : "");
+  };
+  EXPECT_EQ(thing("0,6,0.01:0,0,0:30"), "lamp");
+  EXPECT_EQ(thing("0.6,6,0.01:0.6,0,0:30"), "mirror");
+  EXPECT_EQ(thing("-0.6,6,0.01:-0.6,0,0:30"), " and values");  // through glass
+  look("0.6,6,0.01:0.6,0,0:30");
+  const Picked mirror = pixel(window);
+  EXPECT_NEAR(mirror.r, mirror.b, 30);
+  EXPECT_GT(mirror.r, 60);
+  look("0,1,0:0,2,0.01:50");  // up to the lamp, and past it to the sky
+  EXPECT_GT(pixel(window).g, 240);
+  const Picked sky = pixel(window, -kWidth / 2 + 10);
+  EXPECT_GT(sky.b, sky.r + 40);
+  window.stage().set_weights({{"lamp", 0.0}});
+  window.stage().render();
+  EXPECT_LT(pixel(window).g, 5);
+  // False colours mean values: a lamp is white, the sky is gone.
+  for (int i = 0; window.stage().picture().title() != "illuminance [lx]" && i < 20; ++i)
+    window.act(Action::NextField);
+  const Picked background = pixel(window, -kWidth / 2 + 10);
+  EXPECT_EQ(background.r, background.b);
+  window.stage().set_weights({{"lamp", 1.0}});
+  window.stage().render();
+  EXPECT_GT(pixel(window).b, 220);
+  window.stage().state.hidden = {{Selection::Kind::Object, 1}};
+  EXPECT_EQ(thing("0,6,0.01:0,0,0:30"), " and values");
+}
+
 // The window shows the scene before any light, then every state of the solve until it is done.
 TEST(ViewWindow, ShowsASceneWhileItIsSolved) {
   ATRIUM_NEEDS_DISPLAY();
   const test::TempFolder folder;
   LoadedScene loaded = lit_floor(folder);
-  Document d{bare_mesh(loaded), {}, "floor"};
+  Document d{bare_mesh(loaded), {}, "floor", {}};
   add_standard_views(d.mesh, 1.0, d.views);
   SolveChoice choice;
   choice.error = 0.05;

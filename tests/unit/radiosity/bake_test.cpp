@@ -339,6 +339,114 @@ TEST(Lightmap, ChartsLieApartAndUseOneSizeOfTexel) {
   }
 }
 
+// A wall whose light rises slowly in the dark, 16 texels for a step of 8 bits: means over 16 x 16
+// texels are right within a tenth of a step (rounded values would be half a step off), so nothing
+// of bands is left, whatever a viewer's exposure makes of the picture. White and black stay exact.
+TEST(Lightmap, DarkGradientsHaveNoBands) {
+  if (!scene::image_io_available()) GTEST_SKIP() << "built without OpenImageIO";
+  constexpr int kSize = 256;
+  const auto encoded = [](int x) { return 10.0 + x / 16.0; };  // steps of 8-bit sRGB
+  BakedModel model;
+  model.atlas.width = model.atlas.height = kSize;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double v = std::pow((encoded(x) / 255.0 + 0.055) / 1.055, 2.4);
+      const double exact = encoded(x) / 255.0 <= 0.04045 ? encoded(x) / 255.0 / 12.92 : v;
+      model.atlas.radiance.push_back(Rgb(static_cast<float>(y == 0 ? x % 2 : exact)));
+    }
+  const test::Glb glb = test::parse_glb(encode(model, 1.0));
+  const auto& view = glb.json.at("bufferViews").at(0);
+  const auto first = glb.bin.begin() + view.value("byteOffset", std::ptrdiff_t{0});
+  const material::Texture t = scene::decode_texture(
+      {first, first + view.at("byteLength").get<std::ptrdiff_t>()}, "light.png");
+  ASSERT_EQ(t.width, kSize);
+  const auto channels = static_cast<std::size_t>(t.channels);
+  const auto at = [&](int x, int y) {
+    return t.pixels[static_cast<std::size_t>(y * kSize + x) * channels];
+  };
+  for (int x = 0; x < kSize; ++x) EXPECT_EQ(at(x, 0), x % 2 == 0 ? 0 : 255);
+  double worst = 0.0;
+  for (int block = 0; block < kSize; block += 16)
+    for (int row = 16; row < kSize; row += 16) {
+      double sum = 0.0, expected = 0.0;
+      for (int x = block; x < block + 16; ++x)
+        for (int y = row; y < row + 16; ++y) {
+          sum += at(x, y) / 256.0;
+          expected += encoded(x) / 256.0;
+        }
+      worst = std::max(worst, std::abs(sum - expected));
+    }
+  RecordProperty("worst_step", std::to_string(worst));
+  EXPECT_LT(worst, 0.1);
+}
+
+// In the file itself: 16 bits of each, so COLOR_1 + COLOR_2 is COLOR_0 but for roundings of half a
+// step each.
+TEST(Bake, GroupsOfTheFileSumToTheWhole) {
+  const double white = 60.0;
+  const test::Glb glb = test::parse_glb(encode(plain().model({.group_light = true}), white));
+  test::check_glb(glb);
+  EXPECT_EQ(glb.json.at("asset").at("extras").at("atrium").at("light_groups").size(), 2U);
+  double share = 0.0;
+  for (const auto& mesh : glb.json.at("meshes")) {
+    const auto& a = mesh.at("primitives").at(0).at("attributes");
+    const auto c = [&](const char* name) { return glb.numbers(a.at(name)); };
+    const std::vector<double> whole = c("COLOR_0"), one = c("COLOR_1"), two = c("COLOR_2");
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      if (i % 4 == 3) continue;  // alpha
+      EXPECT_NEAR(one[i] + two[i], whole[i], 1.6 / 65535.0);
+      share = std::max(share, two[i]);
+    }
+  }
+  EXPECT_NEAR(share, 5.0 / white, 1e-4);
+}
+
+// Unlit viewers show none, so the file says what was left out.
+TEST(Bake, GlossIsNamed) {
+  test::SceneMaker maker;
+  const auto wall = maker.material(test::diffuse(0.6));
+  material::Material lacquer = test::diffuse(0.4);
+  lacquer.k_df = 0.8;
+  lacquer.k_rg = 0.2;
+  lacquer.n = 1.5;
+  lacquer.c = 25.0;
+  maker.room({0, 0, 0}, {2, 2, 2}, {wall, maker.material(lacquer), wall, wall, wall, wall});
+  maker.point_light({0.5, 1, 1}, 10.0);
+  const test::Solved s(maker.take(), {.max_elements = 300});
+  const test::Glb glb = test::parse_glb(encode(
+      bake(s.scene, s.result.elements, s.result.field, material::SpectralBasis::grey()), 1.0));
+  int glossy = 0;
+  for (const auto& m : glb.json.at("materials")) {
+    EXPECT_TRUE(m.at("extensions").contains("KHR_materials_unlit"));
+    const double roughness = m.at("pbrMetallicRoughness").at("roughnessFactor");
+    if (!m.contains("extras")) {
+      EXPECT_NEAR(roughness, 0.9, 1e-6);
+      continue;
+    }
+    ++glossy;
+    EXPECT_NEAR(roughness, 0.2, 1e-6);  // 1 / sqrt(25)
+    const auto& lobe = m.at("extras").at("atrium");
+    EXPECT_NEAR(lobe.at("lobe_reflectance").at(0).get<double>(), 0.2 * 0.04, 1e-5);
+    EXPECT_NEAR(lobe.at("lobe_roughness").get<double>(), 0.2, 1e-6);
+  }
+  EXPECT_EQ(glossy, 1);
+}
+
+// What viewers draw beside a mesh: all that has no elements, each object by itself, and the sky.
+TEST(BakePlain, IsWhatHasNoElements) {
+  const scene::Scene s = room(false);
+  std::vector<std::uint8_t> with(s.objects.size(), 1);
+  with.back() = 0;
+  const BakedModel lamp = radiosity::bake_plain(s, kRgb, with, plain().result.groups);
+  ASSERT_EQ(lamp.primitives.size(), 1U);
+  EXPECT_EQ(lamp.primitives[0].name, s.objects.back().name);
+  ASSERT_EQ(lamp.primitives[0].groups.size(), 2U);
+  EXPECT_NEAR(lamp.primitives[0].groups[0][0].radiance[0], 0.0f, 1e-6f);
+  EXPECT_NEAR(lamp.primitives[0].groups[1][0].radiance[0], 5.0f, 1e-4f);
+  EXPECT_EQ(lamp.origin, s.origin);
+  EXPECT_THROW((void)radiosity::bake_plain(s, kRgb, {}), std::invalid_argument);
+}
+
 // Groups of the page sum to the whole within the steps of 0.4 %.
 TEST(Bake, GroupsOfThePageSumToTheWhole) {
   const BakedModel model = plain().model({.group_light = true});

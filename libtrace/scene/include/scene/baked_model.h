@@ -30,7 +30,8 @@ struct BakedModel {
     float alpha_cutoff = 0.0f;     ///< points of the texture with less alpha are not there
     bool double_sided = false;     ///< else backs are not seen
     Rgb color{1.0f};               ///< Metal: reflectance at normal incidence. Glass: transmittance
-    float roughness = 0.0f;        ///< of glTF, Metal
+    float roughness = 0.0f;        ///< of glTF, Metal, and Unlit with gloss
+    Rgb gloss{0.0f};               ///< Unlit: reflectance at normal incidence of the lobe left out
     float ior = 1.5f;              ///< Glass
     float thickness = 0.0f;        ///< [m] of a solid, roughly; 0: a pane
     Rgb attenuation{1.0f};         ///< transmittance of 1 m of a solid
@@ -47,7 +48,7 @@ struct BakedModel {
     std::vector<Vec3f> normals;    ///< where a viewer's own light falls (Metal, Glass)
     std::vector<Vec2f> uvs;        ///< of the texture or the atlas, or empty
     std::vector<Rgb> radiance;     ///< of vertices, Unlit without atlas; before the texture
-    /// By group, then vertex; empty if not asked for.
+    /// By group, then vertex; empty if not asked for. In files COLOR_1, COLOR_2, ...
     std::vector<std::vector<GroupLight>> groups;
     std::vector<std::uint32_t> indices;  ///< triangles
     bool backdrop = false;               ///< the sky, far away: no part of the scene's extent
@@ -84,7 +85,8 @@ struct GlbStatistics {
   double clipped_share = 0.0;  ///< of the vertices or texels brighter than white
 };
 
-/// Binary glTF 2.0: KHR_materials_unlit with linear COLOR_0 (16 bit) or an sRGB atlas inside.
+/// Binary glTF 2.0: KHR_materials_unlit with linear COLOR_0 (16 bit) or an sRGB atlas inside (8
+/// bit, as browsers read them whatever is stored; dithered, so that dark gradients have no bands).
 /// `asset.extras` says what radiance white stands for (docs/web.md, docs/mesh_files.md).
 /// \throws RuntimeFailure  if there are textures and no image module.
 [[nodiscard]] std::vector<std::uint8_t> encode_glb(const BakedModel& model,

@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "command_parser.h"
+#include "option_text.h"
+#include "scene/image_io.h"
+#include "scene/output_file.h"
+#include "shared_options.h"
+
+namespace atrium::app {
+
+namespace {
+
+bool any_output(const RenderCommand& o, bool (*is)(const std::filesystem::path&)) {
+  return std::any_of(o.outputs.begin(), o.outputs.end(),
+                     [&](const std::string& f) { return is(f); });
+}
+
+/// Options that would be ignored, or that say two things, are mistakes worth a word.
+void check_contradictions(const CLI::App& app, const RenderCommand& o) {
+  const auto given = [&](const char* name) { return app.count(name) > 0; };
+  const auto refuse = [&](const char* name, const std::string& why) {
+    if (given(name)) throw Error(std::string(name) + ": " + why);
+  };
+  if (o.method != trace::Method::Hybrid) {
+    const std::string why = "has no meaning with --method " +
+                            std::string(o.method == trace::Method::Path ? "path" : "direct") +
+                            ", which uses no radiosity";
+    for (const char* name :
+         {"--solution", "--save-solution", "--solver", "--indirect", "--memory-limit"}) {
+      refuse(name, why);
+    }
+  }
+  if (o.method == trace::Method::Path && o.mode == trace::Mode::Paper) {
+    throw Error("--mode paper: --method path needs energy-conserving materials (radiometric)");
+  }
+  if (o.mode == trace::Mode::Paper || o.method == trace::Method::Path) {
+    refuse("--no-filter", "--method path and --mode paper never share samples");
+  }
+  if (o.mode == trace::Mode::Paper) {
+    refuse("--indirect", "paper mode reads its ambient light from the mesh");
+  }
+  if (!any_output(o, scene::is_display_ending)) {
+    for (const char* name : {"--exposure", "--tone"}) {
+      refuse(name, "only 8-bit images are tone mapped: there is no .png or .jpg output");
+    }
+  }
+  if (!any_output(o,
+                  [](const std::filesystem::path& f) { return scene::file_ending(f) == ".exr"; })) {
+    refuse("--components", "only .exr holds layers: there is no such output");
+  }
+  if (!o.solution.empty()) {
+    refuse("--save-solution", "there is nothing new to save with --solution");
+    for (const char* name : {"--solver", "--memory-limit"})
+      refuse(name, "nothing is solved with --solution");
+  }
+}
+
+class RenderParser : public CommandParser {
+ public:
+  void add_to(CLI::App& app) override {
+    scene_.add(app, o_.scene);
+    cli::add_repeatable(app, "-o,--output", o_.outputs,
+                        "image: .exr (linear, layers) .pfm .hdr (linear) .png .jpg (tone mapped)",
+                        "FILE")
+        ->required();
+    add_picture(app);
+    app.add_option("--method", method_,
+                   "hybrid (radiosity and ray tracing), path (unbiased reference) or direct (no "
+                   "inter-reflection)")
+        ->check(CLI::IsMember({"hybrid", "path", "direct"}))
+        ->capture_default_str();
+    solver_.add(app, o_.solve);
+    mode_.add(app);
+    add_effort(app);
+    add_common(app, o_.common);
+  }
+
+  Command finish(const CLI::App& sub, const std::string& command_line) override {
+    using trace::Method;
+    using Curve = trace::ToneMapOptions::Curve;
+    scene_.finish(o_.scene);
+    solver_.finish(o_.solve);
+    o_.common.command_line = command_line;
+    if (!size_.empty()) o_.size = parse_size(size_);
+    if (!crop_.empty()) o_.crop = parse_crop(crop_);
+    o_.tone.ev = parse_exposure(exposure_);
+    o_.tone.curve = cli::choose<Curve>(tone_, {{"filmic", Curve::Filmic}, {"srgb", Curve::Srgb}});
+    o_.method = cli::choose<Method>(
+        method_, {{"hybrid", Method::Hybrid}, {"path", Method::Path}, {"direct", Method::Direct}});
+    o_.mode = mode_.value();
+    o_.solve.paper_weights = o_.mode == trace::Mode::Paper;
+    o_.indirect = cli::choose<IndirectChoice>(indirect_, {{"auto", IndirectChoice::Auto},
+                                                          {"mesh", IndirectChoice::Mesh},
+                                                          {"gather", IndirectChoice::Gather}});
+    check_contradictions(sub, o_);
+    return o_;
+  }
+
+ private:
+  void add_picture(CLI::App& app) {
+    app.add_option("--camera", o_.camera, "name or number (from 0), or all: one image each");
+    app.add_option("--size", size_, "WxH; default: 640 wide with the camera's aspect, else 640x480")
+        ->type_name("WxH");
+    app.add_option("--crop", crop_, "part of the image, as shares of width and height")
+        ->type_name("X0,Y0,X1,Y1");
+    app.add_option("--exposure", exposure_, "auto, or the exposure value (EV at ISO 100)")
+        ->capture_default_str();
+    app.add_option("--tone", tone_, "curve for 8-bit images: filmic or srgb")
+        ->check(CLI::IsMember({"filmic", "srgb"}))
+        ->capture_default_str();
+  }
+  void add_effort(CLI::App& app) {
+    app.add_option("--samples", o_.samples, "of a pixel; 0: from the quality (16, 64, 256)")
+        ->check(CLI::Range(0, 1 << 24))
+        ->capture_default_str();
+    app.add_option("--indirect", indirect_,
+                   "inter-reflection in the picture: mesh (interpolated), gather (hemisphere "
+                   "rays), auto: mesh for drafts")
+        ->check(CLI::IsMember({"auto", "mesh", "gather"}))
+        ->capture_default_str();
+    app.add_flag("--components", o_.components, "layers C1..C6 in .exr");
+    app.add_flag("--no-filter", o_.no_filter, "do not share samples between neighbouring pixels");
+    app.add_option("--solution", o_.solution, "use this radiosity solution instead of solving")
+        ->type_name("FILE.atrium");
+    app.add_option("--save-solution", o_.save_solution, "keep the radiosity solution")
+        ->type_name("FILE.atrium");
+  }
+
+  RenderCommand o_;
+  SceneParser scene_;
+  SolverParser solver_;
+  ModeParser mode_;
+  std::string size_, crop_, exposure_ = "auto", tone_ = "filmic", method_ = "hybrid",
+                            indirect_ = "auto";
+};
+
+}  // namespace
+
+std::unique_ptr<CommandParser> render_parser() { return std::make_unique<RenderParser>(); }
+
+}  // namespace atrium::app
