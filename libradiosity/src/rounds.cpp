@@ -92,7 +92,9 @@ template <int N>
 bool plan_next_round(RowState<N>& s) {
   const double target = std::pow(kMargin * s.problem.options.error, 2);
   const double caustics = weighted(s, s.result.caustic.variance);
-  if (caustics > 0.5 * target && !more_photons(s)) return false;
+  bool too_few_photons = caustics > 0.5 * target;
+  if (too_few_photons && more_photons(s)) too_few_photons = false;
+  if (s.work.stopped()) return false;
   if (s.gathered.round() == 0) s.brought.end_first_round(s.gathered);
   for (Tally<N>* tally : {&s.direct, &s.gathered, &s.shot})
     if (tally->round() == 0) tally->end_round(1.0);
@@ -106,10 +108,13 @@ bool plan_next_round(RowState<N>& s) {
   double sampled = 0.0;
   for (const double v : so_far) sampled += v;
   if (!(sampled > 0.0)) return false;
+  // Photons that there is no memory for are no reason to leave the rest as it is.
+  const double for_samples = too_few_photons ? 0.5 * target : target - caustics;
+  if (too_few_photons && sampled <= for_samples) return false;
   // What errors of other sides' light pass on becomes less with these.
   const double passed_on = std::max(1.0, (s.error.raw * s.error.raw - caustics) / sampled);
   const double wanted =
-      std::max((target - caustics) / (passed_on * s.error.smoothing_gain), sampled / 256.0);
+      std::max(for_samples / (passed_on * s.error.smoothing_gain), sampled / 256.0);
   const double effort =
       round_effort(s.problem, s.error.weights, s.exposed, strata, so_far, wanted, cost_so_far(s));
   if (!(effort > 0.0)) return false;

@@ -33,8 +33,8 @@ template <int N>
 struct Rows {
   static constexpr std::uint32_t kChromatic = 0x80000000U;
   struct Entry {
-    std::uint32_t target;  ///< SideIndex; with kChromatic, `weight` is not used
-    float weight;
+    std::uint32_t target;  ///< SideIndex, perhaps with kChromatic
+    float weight;            ///< with kChromatic times that of each lane in `spectral`
     float body;              ///< weight with B(mu) / B-bar of the receiver, for E_B
     std::uint32_t spectral;  ///< index into `spectral` if chromatic
   };
@@ -84,12 +84,17 @@ struct Rows {
     }
     return sum;
   }
+  /// Lane mean of an entry's weight.
+  [[nodiscard]] double mean_weight(const Entry& e) const {
+    const auto lanes = (e.target & kChromatic) == 0 ? 1.0f : spectral[e.spectral].mean();
+    return static_cast<double>(e.weight * lanes);
+  }
   /// Variance that a row takes over from independent errors of what it sees.
   [[nodiscard]] double apply_squared(std::size_t k, const std::vector<double>& variance) const {
     if (rays[k] == 0) return 0.0;
     double sum = 0.0;
     for (std::uint64_t e = first[k]; e < first[k + 1]; ++e) {
-      const double weight = static_cast<double>(entries[e].weight) / rays[k];
+      const double weight = mean_weight(entries[e]) / rays[k];
       sum += weight * weight * variance[entries[e].target & ~kChromatic];
     }
     return sum;

@@ -28,8 +28,9 @@ double row_variance(const RowState<N>& s, std::size_t k, const GroupLight<N>& g)
     const double value = static_cast<double>(leaving(s.problem.sides, j, g.source[j] + g.bounced[j],
                                                      g.source[j ^ 1U] + g.bounced[j ^ 1U])
                                                  .mean());
-    sum += static_cast<double>(entry.weight) * value;
-    squares += static_cast<double>(entry.weight) * value * value;
+    const double weight = s.rows.mean_weight(entry);
+    sum += weight * value;
+    squares += weight * value * value;
   }
   return std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1.0);
 }
