@@ -1,5 +1,6 @@
 #include "statistics.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -137,12 +138,27 @@ void add_error(JsonWriter& json, const Statistics& s) {
     add_irradiance_error(json, *s.solve);
     return;
   }
+  const auto target = [&](const char* name, double value) {
+    if (value > 0.0)
+      json.member(name, value);
+    else
+      json.null(name);
+  };
   json.begin_object("error");
-  json.null("target");
-  if (s.views.empty())
+  target("target", s.picture_target);
+  target("target_block", s.block_target);
+  if (s.views.empty()) {
     json.null("estimate");
-  else
-    json.member("estimate", s.views.back().error_estimate);
+  } else {
+    const ViewSummary& worst =
+        *std::max_element(s.views.begin(), s.views.end(), [](const auto& a, const auto& b) {
+          return a.error_estimate < b.error_estimate;
+        });
+    json.member("estimate", worst.error_estimate);
+    json.member("estimate_block", worst.block_error_estimate);
+    json.member("bias", worst.bias_estimate);
+    json.member("stopped_by", worst.stopped_by);
+  }
   json.null("ci");
   json.end();
 }
@@ -182,7 +198,12 @@ void add_views(JsonWriter& json, const Statistics& s) {
     json.member("width", v.width);
     json.member("height", v.height);
     json.member("samples", v.samples);
+    json.member("samples_mean", v.samples_mean);
+    json.member("rounds", v.rounds);
     json.member("error_estimate", v.error_estimate);
+    json.member("bias_estimate", v.bias_estimate);
+    json.member("block_error_estimate", v.block_error_estimate);
+    json.member("stopped_by", v.stopped_by);
     json.member("complete", v.complete);
     json.begin_array("files");
     for (const std::string& f : v.files) json.element(f);

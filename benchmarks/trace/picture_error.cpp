@@ -54,6 +54,7 @@ trace::RenderOptions options_of(const Options& o, int seed) {
 /// Means over seeds of one setting.
 struct Setting {
   double found = 0.0, estimate = 0.0, samples = 0.0, rays = 0.0, cpu = 0.0;
+  double bias = 0.0, bias_error = 0.0;  ///< of the picture's mean luminance, and its standard error
   double high = 0.0;  ///< 95th percentile of what was found
 };
 
@@ -68,7 +69,11 @@ Setting summary(const std::vector<Trial>& trials, const Options& o) {
     s.samples += t.samples / n;
     s.rays += t.rays / n;
     s.cpu += t.cpu / n;
+    s.bias += t.found.bias / n;
   }
+  for (const Trial& t : trials)
+    s.bias_error += (t.found.bias - s.bias) * (t.found.bias - s.bias) / (n * std::max(1.0, n - 1.0));
+  s.bias_error = std::sqrt(s.bias_error);
   std::sort(found.begin(), found.end());
   s.high = found[static_cast<std::size_t>(std::ceil(0.95 * n)) - 1];
   return s;
@@ -80,7 +85,7 @@ std::vector<Setting> fixed_settings(const PictureScene& scene, const scene::Surf
   constexpr int kSeeds = 2, kMost = 8192;
   const double least = *std::min_element(o.errors.begin(), o.errors.end());
   std::vector<Setting> settings;
-  for (int samples = 4; samples <= kMost; samples *= 2) {
+  for (int samples = 8; samples <= kMost; samples *= 2) {
     std::vector<Trial> trials;
     for (int seed = 1; seed <= kSeeds; ++seed) {
       trace::RenderOptions r = options_of(o, 1000 + seed);
@@ -140,6 +145,7 @@ void measure(const std::string& file, const Options& o, Table& table) {
     const double rays = fixed_rays(fixed, error);
     table.row({scene.name(), percent(error), format("%.2f", s.found / error),
                format("%.2f", s.high / error), format("%.2f", s.estimate / error),
+               format("%+.2f", 100.0 * s.bias) + format(" ± %.2f", 100.0 * s.bias_error),
                format("%.0f", s.samples), short_count(s.rays), format("%.1f", s.cpu),
                short_count(rays), rays > 0.0 ? format("%.2f", s.rays / rays) : "-"});
   }
@@ -165,7 +171,7 @@ int run(int argc, char** argv) {
   app.add_flag("!--no-filter", o.filter, "nothing is shared between pixels");
   app.add_flag("!--no-fixed", o.fixed, "do not look for fixed numbers of samples");
   CLI11_PARSE(app, argc, argv);
-  Table table({"scene", "asked", "found / asked", "95 %", "estimate / asked", "samples", "rays",
+  Table table({"scene", "asked", "found / asked", "95 %", "estimate / asked", "bias %", "samples", "rays",
                "CPU s", "fixed rays", "rays / fixed"});
   for (const std::string& scene : o.scenes) measure(scene, o, table);
   std::fputs(table.text().c_str(), stdout);

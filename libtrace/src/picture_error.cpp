@@ -103,7 +103,7 @@ ErrorEstimate estimate_error(const PictureSamples& s) {
   double bias = 0.0;
   if (s.shared()) {
     const MeanSquare pixels = bias_of_pixels(e.bias_squares);
-    bias = std::max({0.0, pixels.mean - pixels.standard_error, bias_of_squares(s, scale)});
+    bias = std::max({0.0, pixels.mean - 0.5 * pixels.standard_error, bias_of_squares(s, scale)});
   }
   e.noise = std::sqrt(noise);
   e.bias = std::sqrt(bias);

@@ -1,0 +1,63 @@
+#include "picture_effort.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace atrium::app {
+namespace {
+
+constexpr int kMostSamples = 1 << 16;  // of a pixel, with an error asked for
+
+trace::Indirect choice_or(IndirectChoice choice, trace::Indirect automatic) {
+  switch (choice) {
+    case IndirectChoice::Mesh:
+      return trace::Indirect::Mesh;
+    case IndirectChoice::Gather:
+      return trace::Indirect::Gather;
+    default:
+      return automatic;
+  }
+}
+
+/// Error per pixel that stands for what was asked: blocks of 8x8 pixels have about half of it where
+/// most of it is noise that was shared.
+double pixel_error(const RenderCommand& c) {
+  if (!(c.block_error > 0.0)) return c.error;
+  return c.error > 0.0 ? std::min(c.error, 2.0 * c.block_error) : 2.0 * c.block_error;
+}
+
+}  // namespace
+
+PictureEffort plan_effort(RenderCommand& c) {
+  PictureEffort plan;
+  const double error = pixel_error(c);
+  if (!(error > 0.0)) {
+    const Effort effort = effort_of(c.solve.quality);
+    plan.samples = c.samples > 0 ? c.samples : effort.samples;
+    plan.indirect = choice_or(c.indirect, effort.indirect);
+    return plan;
+  }
+  plan.samples = c.samples > 0 ? c.samples : kMostSamples;
+  plan.indirect = choice_or(c.indirect, trace::Indirect::Gather);
+  char text[200];
+  if (c.method == trace::Method::Hybrid && c.solution.empty()) {
+    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(error, 0.01, 0.1);
+    c.solve.quality = error > 0.03 ? Quality::Draft : error > 0.01 ? Quality::Normal : Quality::High;
+    // Elements grow with the error, as the noise of what is read from them does.
+    c.solve.max_elements =
+        static_cast<std::uint32_t>(std::clamp(60000.0 * std::pow(0.02 / error, 1.5), 4000.0, 1.5e5));
+    std::snprintf(text, sizeof text,
+                  "error asked for: radiosity to %.2g %% on about %u elements, %s, up to %d samples",
+                  100.0 * c.solve.error, c.solve.max_elements,
+                  plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
+                                                         : "read behind a bounce (gather)",
+                  plan.samples);
+  } else {
+    std::snprintf(text, sizeof text, "error asked for: up to %d samples of a pixel", plan.samples);
+  }
+  plan.why = text;
+  return plan;
+}
+
+}  // namespace atrium::app
