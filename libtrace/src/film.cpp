@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "error_scale.h"
+#include "share_choice.h"
+
 namespace atrium::trace {
 namespace {
 
@@ -116,21 +119,37 @@ Illumination Film::illumination(std::size_t part) const {
   return light;
 }
 
+// What illumination that is wrong by 1 means for the error of the picture, by pixel.
+std::vector<Rgb> Film::share_weights() const {
+  std::vector<double> y;
+  for (const Pixel& p : pixels_)
+    y.push_back(std::max(0.0, 0.2126 * p.mean[0] + 0.7152 * p.mean[1] + 0.0722 * p.mean[2]));
+  const std::vector<double> scale = error_scales(width_, height_, y);
+  std::vector<Rgb> weights(pixels_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i)
+    if (scale[i] > 0.0) weights[i] = bodies_[i].albedo / static_cast<float>(scale[i]);
+  return weights;
+}
+
 void Film::share() {
   const ShareGuides where = guides();
+  const std::vector<Rgb> weights = share_weights();
+  changes_.assign(pixels_.size(), {});
   for (std::size_t part = 0; part < kParts; ++part) {
-    const Illumination light = share_illumination(where, illumination(part));
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      if (part == 0) changes_[i] = {};
-      if (!usable(i)) continue;
-      const Body& body = bodies_[i];
-        for (std::size_t r = 0; r < kReplicates; ++r) {
-        const Rgb change = light.replicate[r][i] * body.albedo - body.radiance[part][r];
-        changes_[i].replicate[r] += change;
-        changes_[i].part[part] += change * (static_cast<float>(pixels_[i].replicate_count[r]) /
-                                            static_cast<float>(pixels_[i].count));
-      }
-    }
+    const std::vector<Illumination> lights = share_by_levels(where, illumination(part));
+    const std::vector<std::uint8_t> choice = choose_shares(width_, height_, lights, weights);
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+      if (choice[i] > 0 && usable(i)) take_shared(i, part, lights[choice[i]]);
+  }
+}
+
+void Film::take_shared(std::size_t i, std::size_t part, const Illumination& light) {
+  const Body& body = bodies_[i];
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    const Rgb change = light.replicate[r][i] * body.albedo - body.radiance[part][r];
+    changes_[i].replicate[r] += change;
+    changes_[i].part[part] += change * (static_cast<float>(pixels_[i].replicate_count[r]) /
+                                        static_cast<float>(pixels_[i].count));
   }
 }
 

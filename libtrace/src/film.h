@@ -63,7 +63,9 @@ class Film {
   [[nodiscard]] bool usable(std::size_t pixel) const;
   [[nodiscard]] ShareGuides guides() const;
   [[nodiscard]] Illumination illumination(std::size_t part) const;
+  [[nodiscard]] std::vector<Rgb> share_weights() const;
   void share();
+  void take_shared(std::size_t pixel, std::size_t part, const Illumination& light);
   [[nodiscard]] Rgb term(std::size_t pixel, std::size_t term) const;
   void put_samples(std::size_t pixel, PictureSamples& samples) const;
 

@@ -173,8 +173,10 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
   const scene::Shading<N> shading(query, basis);
   const View<N> view{shading, field, options};
   const PixelWindow window = pixel_window(options);
-  const bool shares =
-      options.share_samples && options.method != Method::Path && options.mode == Mode::Radiometric;
+  // Blocks average already; sharing would add its bias and take hardly any noise.
+  const bool blocks_only = options.block_error > 0.0 && !(options.error > 0.0);
+  const bool shares = options.share_samples && options.method != Method::Path &&
+                      options.mode == Mode::Radiometric && !blocks_only;
   Film film(window.width, window.height, options.components, shares);
   ViewTracer<N> tracer(view, camera, window, control);
   RenderResult result;

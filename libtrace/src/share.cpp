@@ -134,7 +134,8 @@ class Level {
 
 }  // namespace
 
-Illumination share_illumination(const ShareGuides& guides, Illumination illumination) {
+std::vector<Illumination> share_by_levels(const ShareGuides& guides, Illumination illumination) {
+  std::vector<Illumination> kept{illumination};
   Levels now{std::move(illumination), {}};
   for (std::size_t h = 0; h < 2; ++h) {
     const std::vector<Rgb>& a = now.light.replicate[2 * h];
@@ -147,8 +148,13 @@ Illumination share_illumination(const ShareGuides& guides, Illumination illumina
     const Level pass(guides, now, 1 << level);
     for_rows(guides, [&](int x, int y) { pass.pixel(x, y, next); });
     std::swap(now, next);
+    if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(now.light);
   }
-  return std::move(now.light);
+  return kept;
+}
+
+Illumination share_illumination(const ShareGuides& guides, Illumination illumination) {
+  return std::move(share_by_levels(guides, std::move(illumination)).back());
 }
 
 }  // namespace atrium::trace

@@ -34,4 +34,8 @@ struct Illumination {
 /// Edge-avoiding a-trous wavelet (Dammertz et al. 2010) guided by variance (Schied et al. 2017).
 [[nodiscard]] Illumination share_illumination(const ShareGuides& guides, Illumination illumination);
 
+/// The light as it is and averaged by more and more levels of wavelets, up to all of them.
+[[nodiscard]] std::vector<Illumination> share_by_levels(const ShareGuides& guides,
+                                                        Illumination illumination);
+
 }  // namespace atrium::trace
