@@ -20,11 +20,12 @@ trace::Indirect choice_or(IndirectChoice choice, trace::Indirect automatic) {
   }
 }
 
-/// Error per pixel that stands for what was asked: blocks of 8x8 pixels have about half of it where
-/// most of it is noise that was shared.
+/// Error per pixel that needs the same radiosity as what was asked: the noise of blocks of 8x8
+/// pixels is an eighth of theirs, the error of the radiosity is not.
 double pixel_error(const RenderCommand& c) {
+  const double of_blocks = 2.5 * c.block_error;
   if (!(c.block_error > 0.0)) return c.error;
-  return c.error > 0.0 ? std::min(c.error, 2.0 * c.block_error) : 2.0 * c.block_error;
+  return c.error > 0.0 ? std::min(c.error, of_blocks) : of_blocks;
 }
 
 }  // namespace
@@ -40,19 +41,25 @@ PictureEffort plan_effort(RenderCommand& c) {
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;
   plan.indirect = choice_or(c.indirect, trace::Indirect::Gather);
+  if (c.method == trace::Method::Hybrid && plan.indirect == trace::Indirect::Mesh)
+    plan.caution =
+        "--indirect mesh: the error of the interpolated radiosity is not in the picture's estimate";
   char text[200];
   if (c.method == trace::Method::Hybrid && c.solution.empty()) {
-    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(error, 0.01, 0.1);
-    c.solve.quality = error > 0.03 ? Quality::Draft : error > 0.01 ? Quality::Normal : Quality::High;
+    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(2.0 * error, 0.01, 0.1);
+    c.solve.quality = error > 0.03   ? Quality::Draft
+                      : error > 0.01 ? Quality::Normal
+                                     : Quality::High;
     // Elements grow with the error, as the noise of what is read from them does.
-    c.solve.max_elements =
-        static_cast<std::uint32_t>(std::clamp(60000.0 * std::pow(0.02 / error, 1.5), 4000.0, 1.5e5));
-    std::snprintf(text, sizeof text,
-                  "error asked for: radiosity to %.2g %% on about %u elements, %s, up to %d samples",
-                  100.0 * c.solve.error, c.solve.max_elements,
-                  plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
-                                                         : "read behind a bounce (gather)",
-                  plan.samples);
+    c.solve.max_elements = static_cast<std::uint32_t>(
+        std::clamp(20000.0 * std::pow(0.02 / error, 1.2), 3000.0, 1.5e5));
+    std::snprintf(
+        text, sizeof text,
+        "error asked for: radiosity to %.2g %% on about %u elements, %s, up to %d samples",
+        100.0 * c.solve.error, c.solve.max_elements,
+        plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
+                                               : "read behind a bounce (gather)",
+        plan.samples);
   } else {
     std::snprintf(text, sizeof text, "error asked for: up to %d samples of a pixel", plan.samples);
   }

@@ -11,15 +11,16 @@ namespace atrium::app {
 struct PictureEffort {
   int samples = 0;  ///< of a pixel; with an error asked for the most
   trace::Indirect indirect = trace::Indirect::Gather;
-  std::string why;  ///< for people, one line
+  std::string why;      ///< for people, one line
+  std::string caution;  ///< a warning; may be empty
 };
 
 /// Effort of the picture that was asked for; sets what the solve shall do (`solve.error`,
 /// `solve.max_elements`) if an error is asked for.
 ///
-/// With --error the radiosity is to be about as certain as the picture: gathering reads it behind a
-/// bounce, where its errors average out, and sharing between pixels only has to find what it does
-/// not know. Measured: docs/performance.md.
+/// With --error the radiosity may be half as certain as the picture: gathering reads it behind a
+/// bounce, where its errors average out, and sharing between pixels finds what it does not know.
+/// Measured: docs/performance.md.
 [[nodiscard]] PictureEffort plan_effort(RenderCommand& command);
 
 }  // namespace atrium::app

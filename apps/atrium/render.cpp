@@ -259,17 +259,6 @@ ViewSummary summarise(const ViewJob& job, const trace::RenderResult& r) {
           .files = {}};
 }
 
-/// One line for people.
-std::string describe(const ViewSummary& v) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "%.4g samples per pixel, at least %d; estimated error %.3g %% of pixels, %.3g %% of "
-                "8x8 pixels; stopped by %s",
-                v.samples_mean, v.samples, 100.0 * v.error_estimate,
-                100.0 * v.block_error_estimate, v.stopped_by.c_str());
-  return text;
-}
-
 void render_view(Session& session, const RenderCommand& c, const PictureEffort& effort,
                  const LoadedScene& loaded, const std::vector<Pack>& packs, const ViewJob& job,
                  double share, Statistics& statistics) {
@@ -331,6 +320,7 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   RenderCommand with_views = c;
   const PictureEffort effort = plan_effort(with_views);
   if (!effort.why.empty()) session.detail(effort.why);
+  if (!effort.caution.empty()) session.progress.warning(effort.caution);
   statistics.picture_target = c.error;
   statistics.block_target = c.block_error;
   with_views.solve.views = views_of(c, jobs);
@@ -338,8 +328,8 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   save_solution(session, c, loaded, packs.front().field);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (i > 0 && session.interrupted()) break;
-    render_view(session, c, effort, loaded, packs, jobs[i], 1.0 / static_cast<double>(jobs.size() - i),
-                statistics);
+    render_view(session, c, effort, loaded, packs, jobs[i],
+                1.0 / static_cast<double>(jobs.size() - i), statistics);
   }
   warn_about_counts(session, statistics.counters);
   write_statistics(session, loaded, statistics);

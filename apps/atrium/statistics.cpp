@@ -66,6 +66,17 @@ std::string describe(const ProbeSummary& c) {
   return line;
 }
 
+std::string describe(const ViewSummary& v) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "%.4g samples per pixel, at least %d; estimated error %.3g %% of pixels, %.3g %% of "
+      "8x8 pixels; stopped by %s",
+      v.samples_mean, v.samples, 100.0 * v.error_estimate, 100.0 * v.block_error_estimate,
+      v.stopped_by.c_str());
+  return text;
+}
+
 namespace {
 
 void add_phases(JsonWriter& json, const PhaseClock& clock) {
@@ -150,10 +161,9 @@ void add_error(JsonWriter& json, const Statistics& s) {
   if (s.views.empty()) {
     json.null("estimate");
   } else {
-    const ViewSummary& worst =
-        *std::max_element(s.views.begin(), s.views.end(), [](const auto& a, const auto& b) {
-          return a.error_estimate < b.error_estimate;
-        });
+    const ViewSummary& worst = *std::max_element(
+        s.views.begin(), s.views.end(),
+        [](const auto& a, const auto& b) { return a.error_estimate < b.error_estimate; });
     json.member("estimate", worst.error_estimate);
     json.member("estimate_block", worst.block_error_estimate);
     json.member("bias", worst.bias_estimate);

@@ -57,6 +57,7 @@ struct ViewSummary {
 
 /// One line for people.
 [[nodiscard]] std::string describe(const ProbeSummary& certificate);
+[[nodiscard]] std::string describe(const ViewSummary& view);
 
 /// Content of a --stats file.
 struct Statistics {

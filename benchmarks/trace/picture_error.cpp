@@ -28,10 +28,10 @@ struct Options {
   int seeds = 20;
   int reference_samples = 4096;
   SolveEffort solve;
-  bool block = false;   // judge and ask for the block error
-  bool mesh = false;    // read the field at visible points instead of gathering
+  bool block = false;  // judge and ask for the block error
+  bool mesh = false;   // read the field at visible points instead of gathering
   bool filter = true;
-  bool fixed = true;    // look for the cheapest fixed number of samples
+  bool fixed = true;  // look for the cheapest fixed number of samples
   std::string method = "hybrid";
 };
 
@@ -55,7 +55,7 @@ trace::RenderOptions options_of(const Options& o, int seed) {
 struct Setting {
   double found = 0.0, estimate = 0.0, samples = 0.0, rays = 0.0, cpu = 0.0;
   double bias = 0.0, bias_error = 0.0;  ///< of the picture's mean luminance, and its standard error
-  double high = 0.0;  ///< 95th percentile of what was found
+  double high = 0.0;                    ///< 95th percentile of what was found
 };
 
 Setting summary(const std::vector<Trial>& trials, const Options& o) {
@@ -72,7 +72,8 @@ Setting summary(const std::vector<Trial>& trials, const Options& o) {
     s.bias += t.found.bias / n;
   }
   for (const Trial& t : trials)
-    s.bias_error += (t.found.bias - s.bias) * (t.found.bias - s.bias) / (n * std::max(1.0, n - 1.0));
+    s.bias_error +=
+        (t.found.bias - s.bias) * (t.found.bias - s.bias) / (n * std::max(1.0, n - 1.0));
   s.bias_error = std::sqrt(s.bias_error);
   std::sort(found.begin(), found.end());
   s.high = found[static_cast<std::size_t>(std::ceil(0.95 * n)) - 1];
@@ -120,7 +121,8 @@ void measure(const std::string& file, const Options& o, Table& table) {
   const scene::SurfaceField field =
       o.method == "path" ? scene::SurfaceField{} : scene.solve(o.solve, 1);
   const double solve_cpu = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  std::fprintf(stderr, "%s: %zu elements, solved in %.2f s\n", scene.name().c_str(), field.element_count(), solve_cpu);
+  std::fprintf(stderr, "%s: %zu elements, solved in %.2f s\n", scene.name().c_str(),
+               field.element_count(), solve_cpu);
   char name[128];
   std::snprintf(name, sizeof name, "/%s-%s-%dx%d-%d.exr", scene.name().c_str(),
                 o.reference_method.c_str(), o.size[0], o.size[1], o.reference_samples);
@@ -136,7 +138,8 @@ void measure(const std::string& file, const Options& o, Table& table) {
       (o.block ? r.block_error : r.error) = error;
       r.samples = 1 << 16;
       trials.push_back(try_picture(scene, field, reference, r));
-      std::fprintf(stderr, "%s %g seed %d: found %.4f estimate %.4f samples %.1f cpu %.2f max %.2f\n",
+      std::fprintf(stderr,
+                   "%s %g seed %d: found %.4f estimate %.4f samples %.1f cpu %.2f max %.2f\n",
                    scene.name().c_str(), error, seed, found_of(trials.back(), o),
                    estimate_of(trials.back(), o), trials.back().samples, trials.back().cpu,
                    trials.back().found.max_abs);
@@ -171,8 +174,8 @@ int run(int argc, char** argv) {
   app.add_flag("!--no-filter", o.filter, "nothing is shared between pixels");
   app.add_flag("!--no-fixed", o.fixed, "do not look for fixed numbers of samples");
   CLI11_PARSE(app, argc, argv);
-  Table table({"scene", "asked", "found / asked", "95 %", "estimate / asked", "bias %", "samples", "rays",
-               "CPU s", "fixed rays", "rays / fixed"});
+  Table table({"scene", "asked", "found / asked", "95 %", "estimate / asked", "bias %", "samples",
+               "rays", "CPU s", "fixed rays", "rays / fixed"});
   for (const std::string& scene : o.scenes) measure(scene, o, table);
   std::fputs(table.text().c_str(), stdout);
   return 0;

@@ -9,9 +9,9 @@
 namespace atrium::trace {
 namespace {
 
-constexpr int kNear = 3, kWide = 9;   // radius of neighbourhoods [pixels]
-constexpr double kPrior = 0.2;        // weight of the wide one
-constexpr double kMostGrowth = 8.0;   // of one pixel in one round
+constexpr int kNear = 3, kWide = 9;  // radius of neighbourhoods [pixels]
+constexpr double kPrior = 0.2;       // weight of the wide one
+constexpr double kMostGrowth = 8.0;  // of one pixel in one round
 
 /// Of a pixel: what its error falls by, what a sample costs, and sqrt(a / cost).
 struct Slope {

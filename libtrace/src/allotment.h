@@ -15,9 +15,9 @@ struct PixelCosts {
 };
 
 struct RoundLimits {
-  double goal = 0.0;      ///< RMS of e
-  double growth = 2.0;    ///< most that the cost of the whole picture may be multiplied by
-  std::uint32_t most = 0; ///< samples of a pixel
+  double goal = 0.0;       ///< RMS of e
+  double growth = 2.0;     ///< most that the cost of the whole picture may be multiplied by
+  std::uint32_t most = 0;  ///< samples of a pixel
 };
 
 /// Number of samples that every pixel should have after the next round, multiples of kReplicates

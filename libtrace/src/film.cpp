@@ -108,10 +108,9 @@ Illumination Film::illumination(std::size_t part) const {
     const Body& body = bodies_[i];
     const bool used = usable(i);
     for (std::size_t r = 0; r < kReplicates; ++r)
-      light.replicate[r].push_back(used ? Rgb::generate([&](int c) {
-        return body.radiance[part][r][c] / body.albedo[c];
-      })
-                                        : Rgb::zero());
+      light.replicate[r].push_back(
+          used ? Rgb::generate([&](int c) { return body.radiance[part][r][c] / body.albedo[c]; })
+               : Rgb::zero());
     const float y = luminance(body.albedo);
     const auto n = static_cast<float>(pixels_[i].count);
     light.variance.push_back(used ? 2.0f * body.m2[part] / (n * (n - 1.0f) * y * y) : 0.0f);
@@ -166,13 +165,12 @@ void Film::put_samples(std::size_t i, PictureSamples& samples) const {
   for (std::size_t h = 0; h < 2; ++h) {
     const auto a = static_cast<float>(p.replicate_count[2 * h]);
     const auto b = static_cast<float>(p.replicate_count[2 * h + 1]);
-    // E (x - y)^2 = s^2 (1/a + 1/b) for means of a and b samples; their joint mean has s^2 / (a + b)
-    // and weighs (a + b) / n.
+    // E (x - y)^2 = s^2 (1/a + 1/b) for means of a and b samples; their joint mean has s^2 / (a +
+    // b) and weighs (a + b) / n.
     const float factor = n > 0.0f ? std::sqrt(a * b) / n : 0.0f;
     samples.deviation[h][i] = (value[2 * h] - value[2 * h + 1]) * factor;
     if (changes_.empty()) continue;
-    for (std::size_t k = 0; k < 2; ++k)
-      samples.change[h][k][i] = changes_[i].replicate[2 * h + k];
+    for (std::size_t k = 0; k < 2; ++k) samples.change[h][k][i] = changes_[i].replicate[2 * h + k];
   }
 }
 

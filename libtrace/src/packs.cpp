@@ -33,8 +33,7 @@ void add_pack(RenderResult& sum, const RenderResult& pack) {
   const std::size_t stride = image.channels.size();
   for (std::size_t k = 0; k < stride; ++k) {
     const std::string& name = image.channels[k];
-    if (name.starts_with("normal.") || name.starts_with("depth.") ||
-        name.starts_with("samples."))
+    if (name.starts_with("normal.") || name.starts_with("depth.") || name.starts_with("samples."))
       continue;
     for (std::size_t i = k; i < image.pixels.size(); i += stride)
       image.pixels[i] += pack.image.pixels[i];

@@ -74,8 +74,7 @@ double bias_of_squares(const PictureSamples& s, const std::vector<double>& scale
       const BoxSums a = sums(0), b = sums(1);
       for (int y = 0; y < s.height; ++y)
         for (int x = 0; x < s.width; ++x)
-          total += a.around(x, y, kReach) * b.around(x, y, kReach) /
-                   square(a.count(x, y, kReach));
+          total += a.around(x, y, kReach) * b.around(x, y, kReach) / square(a.count(x, y, kReach));
     }
   return total / (6.0 * static_cast<double>(s.mean.size()));
 }

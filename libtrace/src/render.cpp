@@ -91,8 +91,7 @@ class ViewTracer {
           continue;
         }
         trace_tile(tiles_[t], samples, film, counters_[t]);
-        const double share =
-            static_cast<double>(++tiles_done) / static_cast<double>(tiles_.size());
+        const double share = static_cast<double>(++tiles_done) / static_cast<double>(tiles_.size());
         progress_.report(control_, progress.from + (progress.to - progress.from) * share,
                          progress.remark);
       }

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t kFirst = 2 * kReplicates;  // samples of a pixel before any estimate
 constexpr int kBlock = 8;                          // edge of the blocks of the block error
-constexpr double kAim = 0.97;     // of the target: a round that just misses it costs another one
-constexpr double kGrowth = 2.0;   // of the cost of the picture in one round
-constexpr double kLeast = 1.1;    // an estimate that is about the target needs some more to move
+constexpr double kAim = 0.97;    // of the target: a round that just misses it costs another one
+constexpr double kGrowth = 2.0;  // of the cost of the picture in one round
+constexpr double kLeast = 1.1;   // an estimate that is about the target needs some more to move
 
 struct Errors {
   ErrorEstimate pixel, block;

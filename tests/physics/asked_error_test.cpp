@@ -114,8 +114,8 @@ TEST(AskedError, IsTheErrorFoundOfThePathTracer) {
 }
 
 // Rounds that follow the samples must not make a picture darker or brighter: the mean of many
-// pictures of few samples is that of one of many. Sharing may be off by 0.4 %: which pixels count as
-// alike depends on the variance of all samples.
+// pictures of few samples is that of one of many. Sharing may be off by 0.4 %: which pixels count
+// as alike depends on the variance of all samples.
 TEST(AskedError, RoundsKeepTheMean) {
   const Room room;
   const auto luminance_of = [](const scene::Image& image) {

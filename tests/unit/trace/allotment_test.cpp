@@ -26,7 +26,8 @@ std::size_t at(int x, int y) { return static_cast<std::size_t>(y * kSize + x); }
 
 // e^2 falls as 1 / n: 0.04 at 8 samples is 0.02 at 16.
 TEST(Allotment, ReachesTheGoal) {
-  const auto n = allot_samples(uniform(0.04f, 8), {.goal = std::sqrt(0.02), .growth = 4.0, .most = 1000});
+  const auto n =
+      allot_samples(uniform(0.04f, 8), {.goal = std::sqrt(0.02), .growth = 4.0, .most = 1000});
   for (const std::uint32_t v : n) EXPECT_EQ(v, 16u);
 }
 
@@ -66,7 +67,7 @@ TEST(Allotment, ARegionIsThePrior) {
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) p.noise[at(30 + x, 30 + y)] = 0.5f;
   const auto n = allot_samples(p, {.goal = 0.01, .growth = 8.0, .most = 1000});
-  EXPECT_GT(n[at(38, 32)], 8u);   // 5 pixels away: beyond its neighbours, in the region
+  EXPECT_GT(n[at(38, 32)], 8u);  // 5 pixels away: beyond its neighbours, in the region
   EXPECT_EQ(n[at(60, 60)], 8u);
 }
 

@@ -43,8 +43,8 @@ PictureSamples synthetic(double sigma, bool shared, double noise_before, Bias&& 
 // Noise of 3 % of a picture of luminance 1: the scale is 1.05, the error 3 % / 1.05. The estimate
 // of the variance has the relative standard error sqrt(2 / 2 n): 1 %; five of them are allowed.
 TEST(PictureError, FindsTheNoiseOfReplicates) {
-  const ErrorEstimate e =
-      estimate_error(synthetic(0.03, false, 0.0, [](std::size_t) { return 0.0; }, 1));
+  const ErrorEstimate e = estimate_error(synthetic(
+      0.03, false, 0.0, [](std::size_t) { return 0.0; }, 1));
   EXPECT_NEAR(e.value * 1.05 / 0.03, 1.0, 0.03);
   EXPECT_EQ(e.bias, 0.0);
   double sum = 0.0;
@@ -64,15 +64,16 @@ TEST(PictureError, FindsTheBiasOfSharing) {
 // Where sharing changes nothing but noise, little bias is claimed: the square has the standard
 // error 4 noise^2 / sqrt(2 n) for single pixels, sqrt(25) / 25 of it over squares of 25.
 TEST(PictureError, ClaimsNoBiasThatIsNotThere) {
-  const ErrorEstimate e =
-      estimate_error(synthetic(0.001, true, 0.04, [](std::size_t) { return 0.0; }, 3));
+  const ErrorEstimate e = estimate_error(synthetic(
+      0.001, true, 0.04, [](std::size_t) { return 0.0; }, 3));
   EXPECT_LT(e.bias, std::sqrt(3.0 * 4.0 * 0.04 * 0.04 / std::sqrt(2.0 * kPixels) / 5.0));
 }
 
 // One bright sample in one pixel: its error counts in full although it makes its surroundings
 // bright. Mean 1, one pixel of 26 (a bright half of one replicate): the honest scale is 1.05.
 TEST(PictureError, ABrightSampleDoesNotHideItself) {
-  PictureSamples s = synthetic(0.0, false, 0.0, [](std::size_t) { return 0.0; }, 4);
+  PictureSamples s = synthetic(
+      0.0, false, 0.0, [](std::size_t) { return 0.0; }, 4);
   const std::size_t middle = kPixels / 2 + kSize / 2;
   s.mean[middle] = Rgb(26.0f);
   s.deviation[0][middle] = Rgb(25.0f);
@@ -82,18 +83,19 @@ TEST(PictureError, ABrightSampleDoesNotHideItself) {
 
 // Means of 8x8 pixels with independent noise have an eighth of it; with common noise all of it.
 TEST(PictureError, BlocksKeepWhatPixelsHaveInCommon) {
-  const PictureSamples s = synthetic(0.08, false, 0.0, [](std::size_t) { return 0.0; }, 5);
+  const PictureSamples s = synthetic(
+      0.08, false, 0.0, [](std::size_t) { return 0.0; }, 5);
   const ErrorEstimate blocks = estimate_error(average_blocks(s, 8));
   EXPECT_NEAR(blocks.value * 1.05 / 0.01, 1.0, 0.25);  // 144 blocks: 6 % for one standard error
   PictureSamples common = s;
   for (auto& d : common.deviation) d.assign(kPixels, Rgb(0.03f));
-  EXPECT_NEAR(estimate_error(average_blocks(common, 8)).value * 1.05,
-              0.03 * std::sqrt(2.0), 0.001);
+  EXPECT_NEAR(estimate_error(average_blocks(common, 8)).value * 1.05, 0.03 * std::sqrt(2.0), 0.001);
 }
 
 // The layer's squares, relative to the scale, have the mean that the estimate has.
 TEST(PictureError, LayerAndEstimateAgree) {
-  const PictureSamples s = synthetic(0.05, false, 0.0, [](std::size_t) { return 0.0; }, 6);
+  const PictureSamples s = synthetic(
+      0.05, false, 0.0, [](std::size_t) { return 0.0; }, 6);
   const std::vector<Rgb> layer = error_layer(s);
   std::vector<double> y;
   for (const Rgb& c : s.mean) y.push_back(static_cast<double>(luminance(c)));

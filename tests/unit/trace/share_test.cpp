@@ -30,8 +30,7 @@ Illumination noisy(F&& truth, float sigma) {
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
       // The mean of the two replicates of a half has the variance that is stated.
-      for (auto& r : i.replicate)
-        r.emplace_back(truth(x, y) + std::sqrt(2.0f) * normal(random));
+      for (auto& r : i.replicate) r.emplace_back(truth(x, y) + std::sqrt(2.0f) * normal(random));
       i.variance.push_back(sigma * sigma);
     }
   return i;
@@ -99,8 +98,8 @@ TEST(Share, ReplicatesDifferByTheNoiseThatIsLeft) {
       share_illumination(flat_guides(), noisy([](int, int) { return 1.0f; }, 0.1f));
   double squares = 0.0;
   for (std::size_t i = 0; i < kSize * kSize; ++i)
-    squares += std::pow(
-        0.5 * static_cast<double>(out.replicate[0][i][1] - out.replicate[1][i][1]), 2.0);
+    squares +=
+        std::pow(0.5 * static_cast<double>(out.replicate[0][i][1] - out.replicate[1][i][1]), 2.0);
   EXPECT_NEAR(std::sqrt(squares) / kSize / rms(out, 1.0, 0, kSize), 1.0, 0.25);
 }
 
