@@ -28,9 +28,15 @@ double pixel_error(const RenderCommand& c) {
   return c.error > 0.0 ? std::min(c.error, of_blocks) : of_blocks;
 }
 
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
+  return text;
+}
+
 }  // namespace
 
-PictureEffort plan_effort(RenderCommand& c) {
+PictureEffort plan_effort(RenderCommand& c, const scene::Features& features) {
   PictureEffort plan;
   const double error = pixel_error(c);
   if (!(error > 0.0)) {
@@ -44,22 +50,25 @@ PictureEffort plan_effort(RenderCommand& c) {
   if (c.method == trace::Method::Hybrid && plan.indirect == trace::Indirect::Mesh)
     plan.caution =
         "--indirect mesh: the error of the interpolated radiosity is not in the picture's estimate";
-  char text[200];
+  char text[256];
   if (c.method == trace::Method::Hybrid && c.solution.empty()) {
-    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(2.0 * error, 0.01, 0.1);
-    c.solve.quality = error > 0.03   ? Quality::Draft
-                      : error > 0.01 ? Quality::Normal
-                                     : Quality::High;
+    const bool caustics = features.mirrors || features.rough || features.solids;
+    const double certain = caustics ? error : 2.0 * error;
+    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(certain, 0.01, 0.1);
+    c.solve.quality = certain > 0.06   ? Quality::Draft
+                      : certain > 0.02 ? Quality::Normal
+                                       : Quality::High;
     // Elements grow with the error, as the noise of what is read from them does.
     c.solve.max_elements = static_cast<std::uint32_t>(
-        std::clamp(20000.0 * std::pow(0.02 / error, 1.2), 3000.0, 1.5e5));
-    std::snprintf(
-        text, sizeof text,
-        "error asked for: radiosity to %.2g %% on about %u elements, %s, up to %d samples",
-        100.0 * c.solve.error, c.solve.max_elements,
-        plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
-                                               : "read behind a bounce (gather)",
-        plan.samples);
+        std::clamp(20000.0 * std::pow(0.04 / certain, 1.2), 3000.0, 1.5e5));
+    const std::string radiosity = c.solve.error > 0.0 ? "to " + percent(c.solve.error) : "as asked";
+    std::snprintf(text, sizeof text,
+                  "error asked for: radiosity %s on about %u elements%s, %s, up to %d samples",
+                  radiosity.c_str(), c.solve.max_elements,
+                  caustics ? " (caustics are read where they are seen)" : "",
+                  plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
+                                                         : "read behind a bounce (gather)",
+                  plan.samples);
   } else {
     std::snprintf(text, sizeof text, "error asked for: up to %d samples of a pixel", plan.samples);
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "options.h"
+#include "scene/features.h"
 
 namespace atrium::app {
 
@@ -20,7 +21,8 @@ struct PictureEffort {
 ///
 /// With --error the radiosity may be half as certain as the picture: gathering reads it behind a
 /// bounce, where its errors average out, and sharing between pixels finds what it does not know.
-/// Measured: docs/performance.md.
-[[nodiscard]] PictureEffort plan_effort(RenderCommand& command);
+/// Caustics are read where they are seen: with mirrors, solids or lobes it must be as certain as the
+/// picture. Measured: docs/performance.md.
+[[nodiscard]] PictureEffort plan_effort(RenderCommand& command, const scene::Features& features);
 
 }  // namespace atrium::app
