@@ -5,6 +5,7 @@
 
 #include "options.h"
 #include "scene/features.h"
+#include "scene/scene.h"
 
 namespace atrium::app {
 
@@ -21,8 +22,9 @@ struct PictureEffort {
 ///
 /// With --error the radiosity may be half as certain as the picture: gathering reads it behind a
 /// bounce, where its errors average out, and sharing between pixels finds what it does not know.
-/// Caustics are read where they are seen: with mirrors, solids or lobes it must be as certain as the
-/// picture. Measured: docs/performance.md.
-[[nodiscard]] PictureEffort plan_effort(RenderCommand& command, const scene::Features& features);
+/// Caustics are read where they are seen: with mirrors, solids or lobes it must be as certain as
+/// the picture. Measured: docs/performance.md.
+[[nodiscard]] PictureEffort plan_effort(RenderCommand& command, const scene::Scene& scene,
+                                        const scene::Features& features);
 
 }  // namespace atrium::app

@@ -318,7 +318,7 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   if (session.interrupted()) return kInterrupted;
   const std::vector<ViewJob> jobs = view_jobs(session, c, loaded);
   RenderCommand with_views = c;
-  const PictureEffort effort = plan_effort(with_views, loaded.features);
+  const PictureEffort effort = plan_effort(with_views, *loaded.scene, loaded.features);
   if (!effort.why.empty()) session.detail(effort.why);
   if (!effort.caution.empty()) session.progress.warning(effort.caution);
   statistics.picture_target = c.error;
