@@ -48,6 +48,7 @@ struct SolveSettings {
   double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
   double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
+  std::uint32_t max_elements = 0;  ///< 0: as the quality
   int probes = 0;              ///< points of the certificate
   bool paper_weights = false;  ///< --mode paper
   scene::Grouping light_groups = scene::Grouping::One;
@@ -67,7 +68,9 @@ struct RenderCommand {
   trace::Method method = trace::Method::Hybrid;
   trace::Mode mode = trace::Mode::Radiometric;
   IndirectChoice indirect = IndirectChoice::Auto;
-  int samples = 0;  ///< 0: from the quality
+  int samples = 0;           ///< 0: from the quality; with an error asked for the most
+  double error = 0.0;        ///< RMS of the picture asked for, per pixel; 0: none
+  double block_error = 0.0;  ///< ... after averaging 8x8 pixels
   bool components = false;
   bool no_filter = false;
   trace::ToneMapOptions tone;

@@ -22,6 +22,9 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   const auto refuse = [&](const char* name, const std::string& why) {
     if (given(name)) throw Error(std::string(name) + ": " + why);
   };
+  if (o.error > 0.0 || o.block_error > 0.0) {
+    refuse("--quality", "says how much effort to make, --error what to reach: give one of them");
+  }
   if (o.method != trace::Method::Hybrid) {
     const std::string why = "has no meaning with --method " +
                             std::string(o.method == trace::Method::Path ? "path" : "direct") +
@@ -111,7 +114,16 @@ class RenderParser : public CommandParser {
         ->capture_default_str();
   }
   void add_effort(CLI::App& app) {
-    app.add_option("--samples", o_.samples, "of a pixel; 0: from the quality (16, 64, 256)")
+    app.add_option("--error", o_.error,
+                   "go on until the RMS error of pixels is below this share of the picture (0.02: 2 "
+                   "%); 0: the samples of --quality")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    app.add_option("--error-block", o_.block_error, "the same after averaging 8x8 pixels")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    app.add_option("--samples", o_.samples,
+                   "of a pixel; 0: from the quality (16, 64, 256); with an error asked for the most")
         ->check(CLI::Range(0, 1 << 24))
         ->capture_default_str();
     app.add_option("--indirect", indirect_,

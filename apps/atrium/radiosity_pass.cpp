@@ -43,7 +43,7 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.solver = settings.solver == SolverChoice::Rows       ? radiosity::Solver::Rows
              : settings.solver == SolverChoice::Shooting ? radiosity::Solver::Shooting
                                                          : radiosity::Solver::Matrix;
-  o.max_elements = effort.max_elements;
+  o.max_elements = settings.max_elements > 0 ? settings.max_elements : effort.max_elements;
   o.row_rays = effort.row_rays;
   o.gather_rays = effort.gather_rays;
   o.direct_samples = effort.direct_samples;

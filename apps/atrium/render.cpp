@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "material/error.h"
+#include "picture_effort.h"
 #include "radiosity_pass.h"
 #include "scene/image_io.h"
 #include "scene/output_file.h"
@@ -144,21 +145,21 @@ void save_solution(Session& session, const RenderCommand& c, const LoadedScene& 
 }
 
 trace::RenderOptions render_options(const Session& session, const RenderCommand& c,
-                                    const scene::Camera& camera, double time_limit) {
-  const Effort effort = effort_of(c.solve.quality);
+                                    const PictureEffort& effort, const scene::Camera& camera,
+                                    double time_limit) {
   trace::RenderOptions o;
   o.method = c.method;
   o.mode = c.mode;
-  o.indirect = c.indirect == IndirectChoice::Mesh     ? trace::Indirect::Mesh
-               : c.indirect == IndirectChoice::Gather ? trace::Indirect::Gather
-                                                      : effort.indirect;
+  o.indirect = effort.indirect;
   // After an interrupt the picture is one cheap sample of what was solved until then.
   if (session.interrupted()) o.indirect = trace::Indirect::Mesh;
   const auto [width, height] = size_for(c, camera);
   o.width = width;
   o.height = height;
   o.crop = c.crop;
-  o.samples = c.samples > 0 ? c.samples : effort.samples;
+  o.samples = effort.samples;
+  o.error = c.error;
+  o.block_error = c.block_error;
   o.time_limit = time_limit;
   o.seed = c.solve.seed;
   o.components = c.components;
@@ -173,6 +174,7 @@ void add_metadata(scene::Image& image, const RenderCommand& c, const LoadedScene
   image.metadata["atrium:command"] = c.common.command_line;
   image.metadata["atrium:seed"] = std::to_string(c.solve.seed);
   image.metadata["atrium:samples"] = std::to_string(result.samples_done);
+  image.metadata["atrium:error"] = std::to_string(result.error_estimate);
   image.metadata["atrium:unit"] = nits ? "cd/m^2" : "W/(sr m^2)";
   image.metadata["atrium:spectrum"] = loaded.basis.describe();
   image.metadata["atrium:complete"] = result.complete ? "yes" : "no";
@@ -225,12 +227,13 @@ std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedSc
   return packs;
 }
 
-trace::RenderResult trace_packs(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+trace::RenderResult trace_packs(Session& session, const RenderCommand& c,
+                                const PictureEffort& effort, const LoadedScene& loaded,
                                 const std::vector<Pack>& packs, const ViewJob& job, double share) {
   trace::RenderResult result;
   for (std::size_t i = 0; i < packs.size(); ++i) {
     const double limit = time_share(session, c, share / static_cast<double>(packs.size() - i));
-    const trace::RenderOptions options = render_options(session, c, job.camera, limit);
+    const trace::RenderOptions options = render_options(session, c, effort, job.camera, limit);
     trace::RenderResult part = trace::render(*loaded.query, packs[i].basis, job.camera,
                                              packs[i].field, options, session.control("render"));
     if (i == 0)
@@ -241,23 +244,32 @@ trace::RenderResult trace_packs(Session& session, const RenderCommand& c, const 
   return result;
 }
 
-void render_view(Session& session, const RenderCommand& c, const LoadedScene& loaded,
-                 const std::vector<Pack>& packs, const ViewJob& job, double share,
-                 Statistics& statistics) {
-  trace::RenderResult result = trace_packs(session, c, loaded, packs, job, share);
+ViewSummary summarise(const ViewJob& job, const trace::RenderResult& r) {
+  return {.camera = job.label,
+          .width = r.image.width,
+          .height = r.image.height,
+          .samples = r.samples_done,
+          .samples_mean = r.samples_mean,
+          .rounds = r.rounds,
+          .error_estimate = r.error_estimate,
+          .bias_estimate = r.bias_estimate,
+          .block_error_estimate = r.block_error_estimate,
+          .stopped_by = r.stopped_by,
+          .complete = r.complete,
+          .files = {}};
+}
+
+void render_view(Session& session, const RenderCommand& c, const PictureEffort& effort,
+                 const LoadedScene& loaded, const std::vector<Pack>& packs, const ViewJob& job,
+                 double share, Statistics& statistics) {
+  trace::RenderResult result = trace_packs(session, c, effort, loaded, packs, job, share);
   statistics.counters += result.counters;
   session.clock.enter("write");
   add_metadata(result.image, c, loaded, result);
   if (statistics.solve)
     result.image.metadata["atrium:radiosity"] =
         statistics.solve->views > 0 ? "for the views of this run" : "of every surface";
-  ViewSummary view{.camera = job.label,
-                   .width = result.image.width,
-                   .height = result.image.height,
-                   .samples = result.samples_done,
-                   .error_estimate = result.error_estimate,
-                   .complete = result.complete,
-                   .files = {}};
+  ViewSummary view = summarise(job, result);
   for (const std::string& output : c.outputs) {
     const std::string file = file_for(output, job);
     scene::write_image(
@@ -266,9 +278,10 @@ void render_view(Session& session, const RenderCommand& c, const LoadedScene& lo
     view.files.push_back(file);
     session.progress.note("wrote " + file);
   }
-  session.detail(std::to_string(view.samples) + " samples per pixel, estimated error " +
-                 std::to_string(100.0 * view.error_estimate) + " %" +
-                 (view.complete ? "" : ", stopped early"));
+  session.detail(describe(view));
+  if ((c.error > 0.0 || c.block_error > 0.0) && view.stopped_by == "samples")
+    session.progress.warning("the error asked for is not reached with --samples " +
+                             std::to_string(effort.samples) + ": " + describe(view));
   statistics.views.push_back(std::move(view));
 }
 
@@ -305,13 +318,18 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   if (session.interrupted()) return kInterrupted;
   const std::vector<ViewJob> jobs = view_jobs(session, c, loaded);
   RenderCommand with_views = c;
+  const PictureEffort effort = plan_effort(with_views, *loaded.scene, loaded.features);
+  if (!effort.why.empty()) session.detail(effort.why);
+  if (!effort.caution.empty()) session.progress.warning(effort.caution);
+  statistics.picture_target = c.error;
+  statistics.block_target = c.block_error;
   with_views.solve.views = views_of(c, jobs);
   const std::vector<Pack> packs = solve_packs(session, with_views, loaded, statistics);
   save_solution(session, c, loaded, packs.front().field);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (i > 0 && session.interrupted()) break;
-    render_view(session, c, loaded, packs, jobs[i], 1.0 / static_cast<double>(jobs.size() - i),
-                statistics);
+    render_view(session, c, effort, loaded, packs, jobs[i],
+                1.0 / static_cast<double>(jobs.size() - i), statistics);
   }
   warn_about_counts(session, statistics.counters);
   write_statistics(session, loaded, statistics);

@@ -1,5 +1,6 @@
 #include "statistics.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -63,6 +64,17 @@ std::string describe(const ProbeSummary& c) {
             percent(c.noise) + " noise";
   for (const std::string& n : c.not_sampled) line += "; not measured: " + n;
   return line;
+}
+
+std::string describe(const ViewSummary& v) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "%.4g samples per pixel, at least %d; estimated error %.3g %% of pixels, %.3g %% of "
+      "8x8 pixels; stopped by %s",
+      v.samples_mean, v.samples, 100.0 * v.error_estimate, 100.0 * v.block_error_estimate,
+      v.stopped_by.c_str());
+  return text;
 }
 
 namespace {
@@ -137,12 +149,26 @@ void add_error(JsonWriter& json, const Statistics& s) {
     add_irradiance_error(json, *s.solve);
     return;
   }
+  const auto target = [&](const char* name, double value) {
+    if (value > 0.0)
+      json.member(name, value);
+    else
+      json.null(name);
+  };
   json.begin_object("error");
-  json.null("target");
-  if (s.views.empty())
+  target("target", s.picture_target);
+  target("target_block", s.block_target);
+  if (s.views.empty()) {
     json.null("estimate");
-  else
-    json.member("estimate", s.views.back().error_estimate);
+  } else {
+    const ViewSummary& worst = *std::max_element(
+        s.views.begin(), s.views.end(),
+        [](const auto& a, const auto& b) { return a.error_estimate < b.error_estimate; });
+    json.member("estimate", worst.error_estimate);
+    json.member("estimate_block", worst.block_error_estimate);
+    json.member("bias", worst.bias_estimate);
+    json.member("stopped_by", worst.stopped_by);
+  }
   json.null("ci");
   json.end();
 }
@@ -182,7 +208,12 @@ void add_views(JsonWriter& json, const Statistics& s) {
     json.member("width", v.width);
     json.member("height", v.height);
     json.member("samples", v.samples);
+    json.member("samples_mean", v.samples_mean);
+    json.member("rounds", v.rounds);
     json.member("error_estimate", v.error_estimate);
+    json.member("bias_estimate", v.bias_estimate);
+    json.member("block_error_estimate", v.block_error_estimate);
+    json.member("stopped_by", v.stopped_by);
     json.member("complete", v.complete);
     json.begin_array("files");
     for (const std::string& f : v.files) json.element(f);

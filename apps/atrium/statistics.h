@@ -46,14 +46,18 @@ struct SolveSummary {
 struct ViewSummary {
   std::string camera;
   int width = 0, height = 0;
-  int samples = 0;
-  double error_estimate = 0.0;
+  int samples = 0;  ///< of a pixel, fewest
+  double samples_mean = 0.0;
+  int rounds = 0;  ///< towards an error asked for
+  double error_estimate = 0.0, bias_estimate = 0.0, block_error_estimate = 0.0;
+  std::string stopped_by;
   bool complete = true;
   std::vector<std::string> files;
 };
 
 /// One line for people.
 [[nodiscard]] std::string describe(const ProbeSummary& certificate);
+[[nodiscard]] std::string describe(const ViewSummary& view);
 
 /// Content of a --stats file.
 struct Statistics {
@@ -61,6 +65,7 @@ struct Statistics {
   std::optional<SolveSummary> solve;
   std::string radiosity_skipped;  ///< the reason, if it was
   std::vector<ViewSummary> views;
+  double picture_target = 0.0, block_target = 0.0;  ///< errors asked for; 0: none
   std::uint64_t seed = 1;
 };
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "error_scale.h"
 #include "rgb_planes.h"
 
 namespace atrium::trace {
@@ -94,46 +95,12 @@ Planes block_average(const Planes& p) {
   return r;
 }
 
-double median_of_lit(const Planes& p) {
-  std::vector<double> lit;
-  for (std::size_t i = 0; i < p.reference.size(); ++i) {
-    if (p.valid[i] != 0 && luminance_of(p.reference[i]) > 0.0)
-      lit.push_back(luminance_of(p.reference[i]));
-  }
-  if (lit.empty()) return 0.0;
-  const std::size_t half = lit.size() / 2;
-  std::nth_element(lit.begin(), lit.begin() + static_cast<std::ptrdiff_t>(half), lit.end());
-  const double upper = lit[half];
-  if (lit.size() % 2 == 1) return upper;
-  return 0.5 *
-         (upper + *std::max_element(lit.begin(), lit.begin() + static_cast<std::ptrdiff_t>(half)));
-}
-
-/// The denominator of e for every pixel. 0 only where the whole reference is black.
+/// The denominator of e for every pixel.
 std::vector<double> scales(const Planes& p) {
-  const double floor = 0.05 * median_of_lit(p);
-  std::vector<double> result(p.reference.size(), 0.0);
-  for (int y = 0; y < p.height; ++y) {
-    for (int x = 0; x < p.width; ++x) {
-      double sum = 0.0, count = 0.0;
-      for (int v = std::max(0, y - 2); v <= std::min(p.height - 1, y + 2); ++v) {
-        for (int u = std::max(0, x - 2); u <= std::min(p.width - 1, x + 2); ++u) {
-          const std::size_t i = p.index(u, v);
-          if (p.valid[i] == 0) continue;
-          sum += luminance_of(p.reference[i]);
-          count += 1.0;
-        }
-      }
-      result[p.index(x, y)] = (count > 0.0 ? sum / count : 0.0) + floor;
-    }
-  }
-  return result;
-}
-
-/// e, with 0 / 0 = 0 (black in a black reference) and anything else / 0 = infinite.
-double relative(double difference, double scale) {
-  if (difference == 0.0) return 0.0;
-  return difference / scale;
+  std::vector<double> luminance(p.reference.size());
+  for (std::size_t i = 0; i < luminance.size(); ++i)
+    luminance[i] = p.valid[i] != 0 ? luminance_of(p.reference[i]) : 0.0;
+  return error_scales(p.width, p.height, luminance, p.valid);
 }
 
 struct Sums {

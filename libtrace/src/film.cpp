@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "error_scale.h"
+#include "share_choice.h"
+
 namespace atrium::trace {
 namespace {
 
@@ -15,27 +18,32 @@ Film::Film(int width, int height, bool components, bool shares) : width_(width),
   const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   pixels_.resize(n);
   if (components) terms_.resize(n);
-  if (shares) bodies_.resize(n);
-}
-
-void Film::add_body(Body& body, const std::array<Rgb, 2>& radiance, const Rgb& albedo,
-                    const Vec3f& position, std::uint32_t sample) {
-  const std::size_t half = sample % 2;
-  const auto n = static_cast<float>(sample + 1);
-  ++body.count[half];
-  for (std::size_t part = 0; part < 2; ++part) {
-    const float before = luminance(radiance[part]) - luminance(body.mean[part]);
-    move_mean(body.mean[part], radiance[part], n);
-    body.m2[part] += before * (luminance(radiance[part]) - luminance(body.mean[part]));
-    move_mean(body.radiance[part][half], radiance[part], static_cast<float>(body.count[half]));
+  if (shares) {
+    bodies_.resize(n);
+    changes_.resize(n);
   }
-  move_mean(body.albedo, albedo, n);
-  body.position += (position - body.position) / n;
 }
 
 template <int N>
-void Film::add(int x, int y, const PixelSample<N>& sample, const material::SpectralBasis& basis,
-               scene::Counters& counters) {
+void Film::add_body(Body& body, const Pixel& pixel, std::size_t replicate,
+                    const PixelSample<N>& sample, const material::SpectralBasis& basis) {
+  const std::array<Rgb, kParts> radiance{basis.to_rgb(sample.body_direct),
+                                         basis.to_rgb(sample.body_indirect)};
+  const auto n = static_cast<float>(pixel.count);
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const float before = luminance(radiance[part]) - luminance(body.mean[part]);
+    move_mean(body.mean[part], radiance[part], n);
+    body.m2[part] += before * (luminance(radiance[part]) - luminance(body.mean[part]));
+    move_mean(body.radiance[part][replicate], radiance[part],
+              static_cast<float>(pixel.replicate_count[replicate]));
+  }
+  move_mean(body.albedo, basis.to_rgb(sample.body_albedo), n);
+  body.position += (sample.position - body.position) / n;
+}
+
+template <int N>
+void Film::add(int x, int y, std::size_t replicate, const PixelSample<N>& sample,
+               const material::SpectralBasis& basis, scene::Counters& counters) {
   const std::size_t i =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   const Spectrum<N> radiance = sample.sum();
@@ -51,15 +59,13 @@ void Film::add(int x, int y, const PixelSample<N>& sample, const material::Spect
     const double value = static_cast<double>(rgb[static_cast<int>(c)]);
     const double before = value - p.mean[c];
     p.mean[c] += before / p.count;
-    p.m2[c] += before * (value - p.mean[c]);
   }
+  move_mean(p.replicate[replicate], rgb, static_cast<float>(++p.replicate_count[replicate]));
   const auto n = static_cast<float>(p.count);
   if (!terms_.empty())
     for (std::size_t t = 0; t < kTerms; ++t)
       move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
-  if (!bodies_.empty())
-    add_body(bodies_[i], {basis.to_rgb(sample.body_direct), basis.to_rgb(sample.body_indirect)},
-             basis.to_rgb(sample.body_albedo), sample.position, p.count - 1);
+  if (!bodies_.empty()) add_body(bodies_[i], p, replicate, sample, basis);
   move_mean(p.albedo, basis.to_rgb(sample.albedo), n);
   move_mean(p.irradiance, basis.to_rgb(sample.irradiance), n);
   p.normal += (sample.normal - p.normal) / n;
@@ -69,66 +75,139 @@ void Film::add(int x, int y, const PixelSample<N>& sample, const material::Spect
   }
 }
 
-template void Film::add<1>(int, int, const PixelSample<1>&, const material::SpectralBasis&,
-                           scene::Counters&);
-template void Film::add<3>(int, int, const PixelSample<3>&, const material::SpectralBasis&,
-                           scene::Counters&);
-template void Film::add<4>(int, int, const PixelSample<4>&, const material::SpectralBasis&,
-                           scene::Counters&);
-template void Film::add<8>(int, int, const PixelSample<8>&, const material::SpectralBasis&,
-                           scene::Counters&);
+template void Film::add<1>(int, int, std::size_t, const PixelSample<1>&,
+                           const material::SpectralBasis&, scene::Counters&);
+template void Film::add<3>(int, int, std::size_t, const PixelSample<3>&,
+                           const material::SpectralBasis&, scene::Counters&);
+template void Film::add<4>(int, int, std::size_t, const PixelSample<4>&,
+                           const material::SpectralBasis&, scene::Counters&);
+template void Film::add<8>(int, int, std::size_t, const PixelSample<8>&,
+                           const material::SpectralBasis&, scene::Counters&);
+
+// A pixel that only partly shows a body keeps its own samples.
+bool Film::usable(std::size_t i) const {
+  const Pixel& p = pixels_[i];
+  return std::all_of(p.replicate_count.begin(), p.replicate_count.end(),
+                     [](std::uint32_t n) { return n > 0; }) &&
+         p.hits == p.count && bodies_[i].albedo.min() > 1e-4f;
+}
+
+ShareGuides Film::guides() const {
+  ShareGuides g{width_, height_, {}, {}, {}};
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    g.position.push_back(bodies_[i].position);
+    g.normal.push_back(pixels_[i].normal);
+    g.depth.push_back(usable(i) ? pixels_[i].depth : 0.0f);
+  }
+  return g;
+}
+
+Illumination Film::illumination(std::size_t part) const {
+  Illumination light;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Body& body = bodies_[i];
+    const bool used = usable(i);
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      light.replicate[r].push_back(
+          used ? Rgb::generate([&](int c) { return body.radiance[part][r][c] / body.albedo[c]; })
+               : Rgb::zero());
+    const float y = luminance(body.albedo);
+    const auto n = static_cast<float>(pixels_[i].count);
+    light.variance.push_back(used ? 2.0f * body.m2[part] / (n * (n - 1.0f) * y * y) : 0.0f);
+  }
+  return light;
+}
+
+// What illumination that is wrong by 1 means for the error of the picture, by pixel.
+std::vector<Rgb> Film::share_weights() const {
+  std::vector<double> y;
+  for (const Pixel& p : pixels_)
+    y.push_back(std::max(0.0, 0.2126 * p.mean[0] + 0.7152 * p.mean[1] + 0.0722 * p.mean[2]));
+  const std::vector<double> scale = error_scales(width_, height_, y);
+  std::vector<Rgb> weights(pixels_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i)
+    if (scale[i] > 0.0) weights[i] = bodies_[i].albedo / static_cast<float>(scale[i]);
+  return weights;
+}
 
 void Film::share() {
-  if (bodies_.empty()) return;
-  ShareGuides guides{width_, height_, {}, {}, {}};
-  std::array<Illumination, 2> parts;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const Pixel& p = pixels_[i];
-    const Body& body = bodies_[i];
-    // A pixel that only partly shows a body keeps its own samples.
-    const bool usable = p.count > 1 && p.hits == p.count && body.albedo.min() > 1e-4f;
-    guides.position.push_back(body.position);
-    guides.normal.push_back(p.normal);
-    guides.depth.push_back(usable ? p.depth : 0.0f);
-    const float y = luminance(body.albedo);
-    const auto n = static_cast<float>(p.count);
-    for (std::size_t k = 0; k < 2; ++k) {
-      for (std::size_t h = 0; h < 2; ++h)
-        parts[k].half[h].push_back(
-            usable ? Rgb::generate([&](int c) { return body.radiance[k][h][c] / body.albedo[c]; })
-                   : Rgb::zero());
-      parts[k].variance.push_back(usable ? 2.0f * body.m2[k] / (n * (n - 1.0f) * y * y) : 0.0f);
-    }
+  const ShareGuides where = guides();
+  const std::vector<Rgb> weights = share_weights();
+  changes_.assign(pixels_.size(), {});
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::vector<Illumination> lights = share_by_levels(where, illumination(part));
+    const std::vector<std::uint8_t> choice = choose_shares(width_, height_, lights, weights);
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+      if (choice[i] > 0 && usable(i)) take_shared(i, part, lights[choice[i]]);
   }
-  const std::array<std::vector<float>, 2> before{parts[0].variance, parts[1].variance};
-  for (Illumination& part : parts) part = share_illumination(guides, std::move(part));
-  for (std::size_t i = 0; i < pixels_.size(); ++i)
-    if (guides.depth[i] > 0.0f) put_shared(i, parts, {before[0][i], before[1][i]});
 }
 
-void Film::put_shared(std::size_t i, const std::array<Illumination, 2>& parts,
-                      const std::array<float, 2>& before) {
-  Pixel& p = pixels_[i];
+void Film::take_shared(std::size_t i, std::size_t part, const Illumination& light) {
   const Body& body = bodies_[i];
-  const double y = static_cast<double>(luminance(body.albedo));
-  const double n = p.count;
-  const float even = static_cast<float>(body.count[0]) / static_cast<float>(p.count);
-  double all = 0.0, less = 0.0;  // variance of the mean: of the pixel, and what sharing takes away
-  for (std::size_t c = 0; c < 3; ++c) all += p.m2[c] / (n * (n - 1.0)) / 3.0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const Rgb shared = parts[k].half[0][i] * even + parts[k].half[1][i] * (1.0f - even);
-    const Rgb change = shared * body.albedo - body.mean[k];
-    for (std::size_t c = 0; c < 3; ++c)
-      p.mean[c] += static_cast<double>(change[static_cast<int>(c)]);
-    const Term term = k == 0 ? Term::DirectReflection : Term::IndirectReflection;
-    if (!terms_.empty()) terms_[i][static_cast<std::size_t>(term)] += change;
-    less += 0.5 * y * y * static_cast<double>(before[k] - parts[k].variance[i]);  // two halves
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    const Rgb change = light.replicate[r][i] * body.albedo - body.radiance[part][r];
+    changes_[i].replicate[r] += change;
+    changes_[i].part[part] += change * (static_cast<float>(pixels_[i].replicate_count[r]) /
+                                        static_cast<float>(pixels_[i].count));
   }
-  const double kept = all > 0.0 ? std::clamp(1.0 - less / all, 0.01, 1.0) : 1.0;
-  for (double& m2 : p.m2) m2 *= kept;
 }
 
-scene::Image Film::image() const {
+void Film::put_samples(std::size_t i, PictureSamples& samples) const {
+  const Pixel& p = pixels_[i];
+  Rgb mean = make_rgb(p.mean[0], p.mean[1], p.mean[2]);
+  std::array<Rgb, kReplicates> value = p.replicate;
+  if (!changes_.empty()) {
+    for (const Rgb& change : changes_[i].part) mean += change;
+    for (std::size_t r = 0; r < kReplicates; ++r) value[r] += changes_[i].replicate[r];
+  }
+  samples.mean[i] = mean;
+  const auto n = static_cast<float>(p.count);
+  for (std::size_t h = 0; h < 2; ++h) {
+    const auto a = static_cast<float>(p.replicate_count[2 * h]);
+    const auto b = static_cast<float>(p.replicate_count[2 * h + 1]);
+    // E (x - y)^2 = s^2 (1/a + 1/b) for means of a and b samples; their joint mean has s^2 / (a +
+    // b) and weighs (a + b) / n.
+    const float factor = n > 0.0f ? std::sqrt(a * b) / n : 0.0f;
+    samples.deviation[h][i] = (value[2 * h] - value[2 * h + 1]) * factor;
+    if (changes_.empty()) continue;
+    for (std::size_t k = 0; k < 2; ++k) samples.change[h][k][i] = changes_[i].replicate[2 * h + k];
+  }
+}
+
+PictureSamples Film::develop() {
+  if (!bodies_.empty()) share();
+  PictureSamples samples;
+  samples.width = width_;
+  samples.height = height_;
+  samples.mean.resize(pixels_.size());
+  for (auto& half : samples.deviation) half.resize(pixels_.size());
+  if (!bodies_.empty())
+    for (auto& half : samples.change)
+      for (auto& replicate : half) replicate.resize(pixels_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i) put_samples(i, samples);
+  return samples;
+}
+
+Rgb Film::term(std::size_t i, std::size_t term) const {
+  Rgb value = terms_[i][term];
+  if (changes_.empty()) return value;
+  if (term == static_cast<std::size_t>(Term::DirectReflection)) value += changes_[i].part[0];
+  if (term == static_cast<std::size_t>(Term::IndirectReflection)) value += changes_[i].part[1];
+  return value;
+}
+
+void Film::count_samples(int& least, double& mean) const {
+  std::uint32_t fewest = pixels_.front().count;
+  double sum = 0.0;
+  for (const Pixel& p : pixels_) {
+    fewest = std::min(fewest, p.count);
+    sum += p.count;
+  }
+  least = static_cast<int>(fewest);
+  mean = sum / static_cast<double>(pixels_.size());
+}
+
+scene::Image Film::image(const std::vector<Rgb>& error) const {
   static constexpr const char* kRgb[3] = {"R", "G", "B"};
   static constexpr const char* kXyz[3] = {"X", "Y", "Z"};
   static constexpr const char* kTermNames[kTerms] = {"C1", "C2", "C3",      "C4",
@@ -145,6 +224,7 @@ scene::Image Film::image() const {
   name("irradiance", kRgb);
   name("normal", kXyz);
   image.channels.emplace_back("depth.Z");
+  image.channels.emplace_back("samples.N");
   if (!terms_.empty())
     for (const char* t : kTermNames) name(t, kRgb);
 
@@ -154,38 +234,21 @@ scene::Image Film::image() const {
   };
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Pixel& p = pixels_[i];
-    Rgb error;
-    for (int c = 0; c < 3; ++c) {
-      const auto k = static_cast<std::size_t>(c);
-      const double n = p.count;
-      error[c] = p.count > 1 ? static_cast<float>(std::sqrt(p.m2[k] / (n * (n - 1.0)))) : 0.0f;
-    }
-    put(make_rgb(p.mean[0], p.mean[1], p.mean[2]));
-    put(error);
+    Rgb mean = make_rgb(p.mean[0], p.mean[1], p.mean[2]);
+    if (!changes_.empty())
+      for (const Rgb& change : changes_[i].part) mean += change;
+    put(mean);
+    put(error[i]);
     put(p.albedo);
     put(p.irradiance);
     put(make_rgb(static_cast<double>(p.normal.x()), static_cast<double>(p.normal.y()),
                  static_cast<double>(p.normal.z())));
     image.pixels.push_back(p.depth);
+    image.pixels.push_back(static_cast<float>(p.count));
     if (!terms_.empty())
-      for (const Rgb& t : terms_[i]) put(t);
+      for (std::size_t t = 0; t < kTerms; ++t) put(term(i, t));
   }
   return image;
-}
-
-double Film::error_estimate() const {
-  double variance = 0.0, mean = 0.0;
-  for (const Pixel& p : pixels_) {
-    if (p.count < 2) continue;
-    const double n = p.count;
-    for (std::size_t c = 0; c < 3; ++c) {
-      variance += p.m2[c] / (n * (n - 1.0));
-      mean += p.mean[c];
-    }
-  }
-  const double channels = 3.0 * static_cast<double>(pixels_.size());
-  mean /= channels;
-  return mean > 0.0 ? std::sqrt(variance / channels) / mean : 0.0;
 }
 
 }  // namespace atrium::trace

@@ -249,7 +249,9 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
       const FieldRadiance<N> r = field_radiance(view, surface, wo, {false, true, !gathers});
       add(depth, Term::IndirectReflection, r.reflected);
       add(depth, Term::IndirectTransmission, r.transmitted);
-      if (depth == 0) out.body_indirect = r.reflected;
+      // What the field knows needs no sharing: what samples find beside it has less shape.
+      if (depth == 0 && gathers && view.options.share_samples)
+        out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
       if (gathers) {
         const Gathered<N> g = gather(view, surface, wo, sampler, counters);
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);

@@ -2,27 +2,17 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+
+#include "rgb_planes.h"
 
 namespace atrium::trace {
 namespace {
 
-// RMS of the standard errors over the mean of the picture, as Film has it.
-double error_estimate(const scene::Image& image) {
-  double variance = 0.0, mean = 0.0;
-  const std::size_t stride = image.channels.size();
-  for (std::size_t k = 0; k < stride; ++k) {
-    const std::string& name = image.channels[k];
-    const bool error = name.starts_with("stderr."), colour = name.size() == 1;
-    if (!error && !colour) continue;
-    for (std::size_t i = k; i < image.pixels.size(); i += stride) {
-      const auto v = static_cast<double>(image.pixels[i]);
-      (error ? variance : mean) += error ? v * v : v;
-    }
-  }
-  const double values = 3.0 * static_cast<double>(image.pixels.size() / stride);
-  mean /= values;
-  return mean > 0.0 ? std::sqrt(variance / values) / mean : 0.0;
+double mean_of(const scene::Image& image) {
+  const RgbPlanes rgb(image);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rgb.size(); ++i) sum += rgb.luminance(i);
+  return sum;
 }
 
 }  // namespace
@@ -30,17 +20,27 @@ double error_estimate(const scene::Image& image) {
 void add_pack(RenderResult& sum, const RenderResult& pack) {
   scene::Image& image = sum.image;
   assert(image.channels == pack.image.channels && image.pixels.size() == pack.image.pixels.size());
+  // Each error is relative to its own pack's light.
+  const double before = std::max(0.0, mean_of(image)), added = std::max(0.0, mean_of(pack.image));
+  const double share = before + added > 0.0 ? before / (before + added) : 0.5;
+  const auto join = [&](double a, double b) { return share * a + (1.0 - share) * b; };
+  sum.error_estimate = join(sum.error_estimate, pack.error_estimate);
+  sum.bias_estimate = join(sum.bias_estimate, pack.bias_estimate);
+  sum.block_error_estimate = join(sum.block_error_estimate, pack.block_error_estimate);
+  sum.rounds = std::max(sum.rounds, pack.rounds);
+  if (pack.stopped_by != "error") sum.stopped_by = pack.stopped_by;
+
   const std::size_t stride = image.channels.size();
   for (std::size_t k = 0; k < stride; ++k) {
     const std::string& name = image.channels[k];
-    if (name.starts_with("normal.") || name.starts_with("depth.")) continue;
+    if (name.starts_with("normal.") || name.starts_with("depth.") || name.starts_with("samples."))
+      continue;
     for (std::size_t i = k; i < image.pixels.size(); i += stride)
       image.pixels[i] += pack.image.pixels[i];
   }
   sum.counters += pack.counters;
   sum.samples_done = std::min(sum.samples_done, pack.samples_done);
   sum.complete = sum.complete && pack.complete;
-  sum.error_estimate = error_estimate(image);
 }
 
 }  // namespace atrium::trace

@@ -11,6 +11,7 @@
 #include "film.h"
 #include "integrator.h"
 #include "material/error.h"
+#include "rounds.h"
 #include "scene/parallel.h"
 #include "trace/camera_window.h"
 
@@ -39,38 +40,14 @@ PixelSample<N> trace(const View<N>& view, const scene::Ray& ray, scene::Sampler&
   return trace_hybrid(view, ray, sampler, counters);
 }
 
-template <int N>
-void render_tile(const View<N>& view, const scene::Camera& camera, const PixelWindow& window,
-                 const Tile& tile, int first_sample, int last_sample, Film& film,
-                 scene::Counters& counters) {
-  const RenderOptions& o = view.options;
-  const double aspect = static_cast<double>(o.width) / static_cast<double>(o.height);
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const int px = x + window.x0;  // pixel of the whole image: a crop shows the same samples
-      const int py = y + window.y0;
-      const auto stream = static_cast<std::uint32_t>(py) * static_cast<std::uint32_t>(o.width) +
-                          static_cast<std::uint32_t>(px);
-      for (int i = first_sample; i < last_sample; ++i) {
-        scene::Sampler sampler(o.seed, stream, static_cast<std::uint32_t>(i));
-        const Vec2f jitter = sampler.next_2d();
-        const Vec2d place((px + static_cast<double>(jitter.x())) / o.width,
-                          (py + static_cast<double>(jitter.y())) / o.height);
-        const scene::Camera::CameraRay r = camera.ray(place, aspect);
-        film.add(x, y, trace(view, {r.origin, r.direction}, sampler, counters),
-                 view.shading.basis(), counters);
-      }
-    }
-}
-
 // Workers report through one of them at a time; the others go on.
 class SerialProgress {
  public:
-  void report(const scene::Control& control, double fraction) {
+  void report(const scene::Control& control, double fraction, const std::string& remark) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock.owns_lock() || fraction < last_ + 0.002) return;
     last_ = fraction;
-    control.report("render", fraction);
+    control.report("render", fraction, remark);
   }
 
  private:
@@ -78,52 +55,137 @@ class SerialProgress {
   double last_ = 0.0;
 };
 
+/// One view being rendered.
+template <int N>
+class ViewTracer {
+ public:
+  ViewTracer(const View<N>& view, const scene::Camera& camera, const PixelWindow& window,
+             const scene::Control& control)
+      : view_(view),
+        camera_(camera),
+        window_(window),
+        control_(control),
+        tiles_(tiles_of(window.width, window.height)),
+        counters_(tiles_.size()) {
+    const auto pixels =
+        static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+    done_.assign(pixels, 0);
+    rays_.assign(pixels, 0);
+    cost_.assign(pixels, 1.0f);
+  }
+
+  /// As Pass has it.
+  bool pass(const std::vector<std::uint32_t>& samples, const PassProgress& progress, Film& film,
+            RenderResult& result) {
+    std::atomic<std::size_t> tiles_done = 0;
+    std::atomic<bool> late = false, interrupted = false;
+    scene::parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        // Every pixel gets its first sample; after that a request ends the pass where it is.
+        if (!first_ && control_.stop_requested()) {
+          interrupted = true;
+          continue;
+        }
+        if (!first_ && time_is_up()) {
+          late = true;
+          continue;
+        }
+        trace_tile(tiles_[t], samples, film, counters_[t]);
+        const double share = static_cast<double>(++tiles_done) / static_cast<double>(tiles_.size());
+        progress_.report(control_, progress.from + (progress.to - progress.from) * share,
+                         progress.remark);
+      }
+    });
+    first_ = false;
+    for (std::size_t i = 0; i < done_.size(); ++i)
+      cost_[i] = static_cast<float>(rays_[i]) / static_cast<float>(std::max(done_[i], 1U));
+    if (interrupted)
+      result.stopped_by = "interrupt";
+    else if (late)
+      result.stopped_by = "time limit";
+    return !interrupted && !late;
+  }
+
+  [[nodiscard]] const std::vector<float>& cost() const { return cost_; }
+  [[nodiscard]] scene::Counters counters() const {
+    scene::Counters sum;
+    for (const scene::Counters& c : counters_) sum += c;
+    return sum;
+  }
+
+ private:
+  [[nodiscard]] bool time_is_up() const {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+    return view_.options.time_limit > 0.0 && elapsed.count() > view_.options.time_limit;
+  }
+
+  void trace_tile(const Tile& tile, const std::vector<std::uint32_t>& samples, Film& film,
+                  scene::Counters& counters) {
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        const std::size_t pixel =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.width) +
+            static_cast<std::size_t>(x);
+        const std::uint64_t before = counters.rays();
+        for (; done_[pixel] < samples[pixel]; ++done_[pixel])
+          trace_sample(x, y, done_[pixel], film, counters);
+        rays_[pixel] += counters.rays() - before;
+      }
+  }
+
+  void trace_sample(int x, int y, std::uint32_t number, Film& film, scene::Counters& counters) {
+    const RenderOptions& o = view_.options;
+    const int px = x + window_.x0;  // pixel of the whole image: a crop shows the same samples
+    const int py = y + window_.y0;
+    const auto pixel = static_cast<std::uint32_t>(py) * static_cast<std::uint32_t>(o.width) +
+                       static_cast<std::uint32_t>(px);
+    constexpr auto kSets = static_cast<std::uint32_t>(kReplicates);
+    const std::uint32_t replicate = number % kSets;
+    scene::Sampler sampler(o.seed, scene::hash_combine(pixel, replicate), number / kSets);
+    const Vec2f jitter = sampler.next_2d();
+    const Vec2d place((px + static_cast<double>(jitter.x())) / o.width,
+                      (py + static_cast<double>(jitter.y())) / o.height);
+    const double aspect = static_cast<double>(o.width) / static_cast<double>(o.height);
+    const scene::Camera::CameraRay r = camera_.ray(place, aspect);
+    film.add(x, y, replicate, trace(view_, {r.origin, r.direction}, sampler, counters),
+             view_.shading.basis(), counters);
+  }
+
+  const View<N>& view_;
+  const scene::Camera& camera_;
+  const PixelWindow& window_;
+  const scene::Control& control_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::vector<Tile> tiles_;
+  std::vector<scene::Counters> counters_;  // by tile
+  std::vector<std::uint32_t> done_;        // samples by pixel
+  std::vector<std::uint64_t> rays_;        // by pixel
+  std::vector<float> cost_;                // [rays per sample]
+  SerialProgress progress_;
+  bool first_ = true;
+};
+
 template <int N>
 RenderResult render_lanes(const scene::RayQuery& query, const material::SpectralBasis& basis,
                           const scene::Camera& camera, const scene::SurfaceField& field,
                           const RenderOptions& options, const scene::Control& control) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto elapsed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
   const scene::Shading<N> shading(query, basis);
   const View<N> view{shading, field, options};
   const PixelWindow window = pixel_window(options);
-  const bool shares =
-      options.share_samples && options.method != Method::Path && options.mode == Mode::Radiometric;
+  // Blocks average already; sharing would add its bias and take hardly any noise.
+  const bool blocks_only = options.block_error > 0.0 && !(options.error > 0.0);
+  const bool shares = options.share_samples && options.method != Method::Path &&
+                      options.mode == Mode::Radiometric && !blocks_only;
   Film film(window.width, window.height, options.components, shares);
-  const std::vector<Tile> tiles = tiles_of(window.width, window.height);
-  std::vector<scene::Counters> counters(tiles.size());
-
-  // Passes of doubling size: a picture of the whole view early, few synchronisations later.
+  ViewTracer<N> tracer(view, camera, window, control);
   RenderResult result;
-  SerialProgress progress;
-  while (result.samples_done < options.samples && result.complete) {
-    const int first = result.samples_done;
-    const int last = std::min(options.samples, first + std::clamp(first, 1, 16));
-    std::atomic<std::size_t> tiles_done = 0;
-    std::atomic<bool> stopped = false;
-    scene::parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        // Every pixel gets its first sample; after that a request ends the pass where it is.
-        const bool late = options.time_limit > 0.0 && elapsed() > options.time_limit;
-        if (first > 0 && (late || control.stop_requested())) {
-          stopped = true;
-          continue;
-        }
-        render_tile(view, camera, window, tiles[t], first, last, film, counters[t]);
-        progress.report(control, (first + (last - first) * static_cast<double>(++tiles_done) /
-                                              static_cast<double>(tiles.size())) /
-                                     options.samples);
-      }
-    });
-    result.complete = !stopped;
-    if (!stopped) result.samples_done = last;
-  }
-  for (const scene::Counters& c : counters) result.counters += c;
-  film.share();
-  result.image = film.image();
-  result.error_estimate = film.error_estimate();
+  take_samples(
+      film, window.width, window.height, options,
+      [&](const std::vector<std::uint32_t>& samples, const PassProgress& progress) {
+        return tracer.pass(samples, progress, film, result);
+      },
+      tracer.cost(), result);
+  result.counters = tracer.counters();
   return result;
 }
 
@@ -132,6 +194,8 @@ void check(const scene::SurfaceField& field, const material::SpectralBasis& basi
   if (o.width < 1 || o.height < 1 || o.width > 65536 || o.height > 65536)
     throw std::invalid_argument("render: width and height must be within 1..65536");
   if (o.samples < 1) throw std::invalid_argument("render: samples must be at least 1");
+  if (!(o.error >= 0.0) || !(o.block_error >= 0.0))
+    throw std::invalid_argument("render: an error asked for must not be negative");
   if (!field.empty() && field.lanes != basis.lanes())
     throw std::invalid_argument("render: the field was solved with another number of lanes");
   if (o.mode == Mode::Paper && o.method == Method::Path)

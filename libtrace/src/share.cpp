@@ -23,21 +23,31 @@ void for_rows(const ShareGuides& guides, F&& pixel) {
                       });
 }
 
+/// The state between two levels: the replicates, and each half's own average that guides the other.
+struct Levels {
+  Illumination light;
+  std::array<std::vector<Rgb>, 2> guide;
+};
+
 class Level {
  public:
   // Weights are the same from p to q as from q to p: what a pixel gives away others receive.
-  Level(const ShareGuides& guides, const Illumination& in, int step)
-      : g_(guides), in_(in), step_(step), noise_(in.variance.size()) {
+  Level(const ShareGuides& guides, const Levels& in, int step)
+      : g_(guides), in_(in), step_(step), noise_(in.light.variance.size()) {
     for_rows(guides, [&](int x, int y) { noise_[index(x, y)] = blurred_variance(x, y); });
   }
 
-  void pixel(int x, int y, Illumination& out) const {
+  void pixel(int x, int y, Levels& out) const {
     const std::size_t p = index(x, y);
-    out.half[0][p] = in_.half[0][p];
-    out.half[1][p] = in_.half[1][p];
-    out.variance[p] = in_.variance[p];
-    if (!(g_.depth[p] > 0.0f)) return;
-    std::array<Rgb, 2> sum;
+    if (!(g_.depth[p] > 0.0f)) {
+      for (std::size_t r = 0; r < kReplicates; ++r)
+        out.light.replicate[r][p] = in_.light.replicate[r][p];
+      for (std::size_t h = 0; h < 2; ++h) out.guide[h][p] = in_.guide[h][p];
+      out.light.variance[p] = in_.light.variance[p];
+      return;
+    }
+    std::array<Rgb, kReplicates> sum;
+    std::array<Rgb, 2> guide;
     std::array<float, 2> weights{}, variance{};
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx) {
@@ -49,10 +59,13 @@ class Level {
                               (p == q ? 1.0f : same_surface(p, q));
         if (!(surface > 0.0f)) continue;
         for (std::size_t h = 0; h < 2; ++h) {
-          const float w = p == q ? surface : surface * same_light(in_.half[1 - h], p, q);
-          sum[h] += in_.half[h][q] * w;
+          const float w = p == q ? surface : surface * same_light(in_.guide[h], p, q);
+          guide[h] += in_.guide[h][q] * w;
+          const std::size_t other = 2 * (1 - h);
+          sum[other] += in_.light.replicate[other][q] * w;
+          sum[other + 1] += in_.light.replicate[other + 1][q] * w;
           weights[h] += w;
-          variance[h] += w * w * in_.variance[q];
+          variance[h] += w * w * in_.light.variance[q];
         }
       }
     // From the second level on neighbours hold some of the same samples: composed, the splines
@@ -60,10 +73,14 @@ class Level {
     constexpr float kOverlap = 3.3f;
     float independent = 0.0f;
     for (std::size_t h = 0; h < 2; ++h) {
-      out.half[h][p] = sum[h] / weights[h];
+      out.guide[h][p] = guide[h] / weights[h];
+      const std::size_t other = 2 * (1 - h);
+      out.light.replicate[other][p] = sum[other] / weights[h];
+      out.light.replicate[other + 1][p] = sum[other + 1] / weights[h];
       independent += 0.5f * variance[h] / (weights[h] * weights[h]);
     }
-    out.variance[p] = step_ > 1 ? std::min(kOverlap * independent, in_.variance[p]) : independent;
+    out.light.variance[p] =
+        step_ > 1 ? std::min(kOverlap * independent, in_.light.variance[p]) : independent;
   }
 
  private:
@@ -82,7 +99,7 @@ class Level {
         if (!(g_.depth[q] > 0.0f)) continue;
         const float w = kSpline[static_cast<std::size_t>(std::abs(dx))] *
                         kSpline[static_cast<std::size_t>(std::abs(dy))];
-        sum += w * in_.variance[q];
+        sum += w * in_.light.variance[q];
         weights += w;
       }
     return weights > 0.0f ? sum / weights : 0.0f;
@@ -110,21 +127,34 @@ class Level {
   }
 
   const ShareGuides& g_;
-  const Illumination& in_;
+  const Levels& in_;
   int step_;
   std::vector<float> noise_;
 };
 
 }  // namespace
 
-Illumination share_illumination(const ShareGuides& guides, Illumination illumination) {
-  Illumination next = illumination;
-  for (int level = 0; level < kLevels; ++level) {
-    const Level pass(guides, illumination, 1 << level);
-    for_rows(guides, [&](int x, int y) { pass.pixel(x, y, next); });
-    std::swap(illumination, next);
+std::vector<Illumination> share_by_levels(const ShareGuides& guides, Illumination illumination) {
+  std::vector<Illumination> kept{illumination};
+  Levels now{std::move(illumination), {}};
+  for (std::size_t h = 0; h < 2; ++h) {
+    const std::vector<Rgb>& a = now.light.replicate[2 * h];
+    const std::vector<Rgb>& b = now.light.replicate[2 * h + 1];
+    now.guide[h].resize(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) now.guide[h][i] = (a[i] + b[i]) * 0.5f;
   }
-  return illumination;
+  Levels next = now;
+  for (int level = 0; level < kLevels; ++level) {
+    const Level pass(guides, now, 1 << level);
+    for_rows(guides, [&](int x, int y) { pass.pixel(x, y, next); });
+    std::swap(now, next);
+    if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(now.light);
+  }
+  return kept;
+}
+
+Illumination share_illumination(const ShareGuides& guides, Illumination illumination) {
+  return std::move(share_by_levels(guides, std::move(illumination)).back());
 }
 
 }  // namespace atrium::trace

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "material/spectral_basis.h"
 #include "scene/camera.h"
@@ -36,24 +37,34 @@ struct RenderOptions {
   int width = 640;
   int height = 480;
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1 as shares of the image
-  int samples = 64;                                ///< camera samples per pixel
+  int samples = 64;  ///< camera samples per pixel; with an error asked for the most of a pixel
+  /// RMS of the picture's relative error (trace/compare.h) to reach, per pixel and after averaging
+  /// 8x8 pixels, by more samples where they lower it most; 0: not asked for. With both zero every
+  /// pixel gets `samples`.
+  double error = 0.0, block_error = 0.0;
   double time_limit = 0.0;  ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
   int max_specular_depth = 64;  ///< mirror and glass events of one path (hybrid, paper)
   /// Average body light over neighbouring pixels of one surface as far as their noise allows (not
-  /// in Method::Path or paper mode). Its bias is not estimated yet: stderr.* is the noise alone.
+  /// in Method::Path or paper mode).
   bool share_samples = true;
   bool components = false;  ///< layers C1..C6 and emission
 };
 
 struct RenderResult {
-  /// Linear. Always R,G,B, albedo.*, normal.*, depth.Z, irradiance.*, stderr.*; with
-  /// components C1.R ... C6.B and emission.*, whose sum is R,G,B.
+  /// Linear. Always R,G,B, albedo.*, normal.*, depth.Z, irradiance.*, samples.N (of the pixel),
+  /// stderr.* (RMS error, also by sharing between pixels, smoothed over 5x5 pixels; 0 below 4
+  /// samples); with components C1.R ... C6.B and emission.*, whose sum is R,G,B.
   scene::Image image;
   scene::Counters counters;
-  int samples_done = 0;         ///< per pixel, smallest
-  double error_estimate = 0.0;  ///< RMS of stderr.* over pixels, relative to the mean of the image
-  bool complete = true;         ///< false: stopped by time or request
+  int samples_done = 0;        ///< per pixel, smallest
+  double samples_mean = 0.0;   ///< per pixel
+  int rounds = 0;              ///< after the first samples of every pixel, towards an error
+  double error_estimate = 0.0;        ///< RMS of the relative error per pixel (trace/compare.h)
+  double bias_estimate = 0.0;         ///< its part that sharing between pixels causes
+  double block_error_estimate = 0.0;  ///< after averaging 8x8 pixels
+  std::string stopped_by;  ///< "error" (reached), "samples", "time limit", "interrupt"
+  bool complete = true;    ///< false: stopped by time or request
 };
 
 /// Renders one view. Deterministic for a scene, options and seed at any thread count (time limits

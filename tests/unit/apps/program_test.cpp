@@ -256,6 +256,44 @@ TEST_F(AtriumRun, StatisticsSayWhichErrorIsMeant) {
   EXPECT_NE(radiosity.find("\"verdict\": \""), none) << radiosity;
 }
 
+// A picture to an asked error: the target, what is estimated and why it stopped are said.
+TEST_F(AtriumRun, PicturesReachTheErrorAskedFor) {
+  const auto error = [&] { return json_member(read_file(folder / "s.json"), "error"); };
+  constexpr auto none = std::string::npos;
+  folder.write("seen.yaml", R"(atrium: 1
+materials:
+  white: {body: 0.5}
+  lamp: {body: 0, emission: {radiance: 100}}
+objects:
+  - {name: floor, material: white, polygon: [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]}
+  - {name: wall, material: white, polygon: [[-1, 0, -1], [1, 0, -1], [1, 2, -1], [-1, 2, -1]]}
+  - {name: lamp, material: lamp, polygon: [[-0.2, 2, -0.2], [0.2, 2, -0.2], [0.2, 2, 0.2], [-0.2, 2, 0.2]]}
+cameras:
+  - {name: front, perspective: {eye: [0, 1, 3], target: [0, 0.7, 0], yfov: 50}}
+)");
+  const std::string render = "render seen.yaml -o a.exr --size 24x18 --stats s.json ";
+  const Result r = run(folder, render + "--error 0.125 --verbose");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.err.find("error asked for: radiosity to 10 %"), none) << r.err;
+  EXPECT_NE(error().find("\"target\": 0.125"), none) << error();
+  EXPECT_NE(error().find("\"target_block\": null"), none) << error();
+  EXPECT_NE(error().find("\"stopped_by\": \"error\""), none) << error();
+
+  EXPECT_EQ(run(folder, render + "--error-block 0.0625 --method path --quiet").code, 0);
+  EXPECT_NE(error().find("\"target\": null"), none) << error();
+  EXPECT_NE(error().find("\"target_block\": 0.0625"), none) << error();
+
+  // Not reached: a picture all the same, and a warning.
+  const Result few = run(folder, render + "--error 0.000001 --samples 8 --method path --quiet");
+  EXPECT_EQ(few.code, 0);
+  EXPECT_NE(few.err.find("warning: the error asked for is not reached"), none) << few.err;
+  EXPECT_NE(error().find("\"stopped_by\": \"samples\""), none) << error();
+
+  expect_error(run(folder, render + "--error 0.1 --quality high"), 2, "--quality");
+  expect_error(run(folder, render + "--error 2"), 2, "--error");
+  expect_error(run(folder, render + "--error-block -1"), 2, "--error-block");
+}
+
 // Grey: one lane, less memory. The rays are the same.
 TEST_F(AtriumRun, GreyScenesAreSolvedInOneLane) {
   const auto solve = [&] {

@@ -38,7 +38,7 @@ TEST(MeshIo, WritesBothFormatsComplete) {
     write_polygon_mesh(sample_mesh(), folder / name);
     std::ifstream in(folder / name, std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(in), {}};
-    EXPECT_NE(content.find("compressor=\"vtkZLibDataCompressor\""), std::string::npos);
+    EXPECT_NE(content.find("compressor=\"vtkLZ4DataCompressor\""), std::string::npos);
     EXPECT_NE(content.find("Name=\"irradiance\""), std::string::npos);
     EXPECT_NE(content.find("Name=\"unit\""), std::string::npos);
     EXPECT_NE(content.find("</VTKFile>"), std::string::npos);

@@ -1,0 +1,90 @@
+#include "picture_effort.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace atrium::app {
+namespace {
+
+constexpr int kMostSamples = 1 << 16;  // of a pixel, with an error asked for
+
+trace::Indirect choice_or(IndirectChoice choice, trace::Indirect automatic) {
+  switch (choice) {
+    case IndirectChoice::Mesh:
+      return trace::Indirect::Mesh;
+    case IndirectChoice::Gather:
+      return trace::Indirect::Gather;
+    default:
+      return automatic;
+  }
+}
+
+/// Error per pixel that needs the same radiosity as what was asked: the noise of blocks of 8x8
+/// pixels is an eighth of theirs, the error of the radiosity is not.
+double pixel_error(const RenderCommand& c) {
+  const double of_blocks = 2.5 * c.block_error;
+  if (!(c.block_error > 0.0)) return c.error;
+  return c.error > 0.0 ? std::min(c.error, of_blocks) : of_blocks;
+}
+
+/// Elements of 13 cm on the sides of the scene's box, as many as --quality normal at most: in
+/// office_floor coarser ones lost 5.5 % of the light.
+double least_elements(const scene::Scene& scene) {
+  if (scene.bounds.isEmpty()) return 3000.0;
+  const Vec3d size = scene.bounds.sizes();
+  const double area =
+      2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());  // [m^2]
+  return std::clamp(area / (0.13 * 0.13), 3000.0, 60000.0);
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
+  return text;
+}
+
+}  // namespace
+
+PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
+                          const scene::Features& features) {
+  PictureEffort plan;
+  const double error = pixel_error(c);
+  if (!(error > 0.0)) {
+    const Effort effort = effort_of(c.solve.quality);
+    plan.samples = c.samples > 0 ? c.samples : effort.samples;
+    plan.indirect = choice_or(c.indirect, effort.indirect);
+    return plan;
+  }
+  plan.samples = c.samples > 0 ? c.samples : kMostSamples;
+  plan.indirect = choice_or(c.indirect, trace::Indirect::Gather);
+  if (c.method == trace::Method::Hybrid && plan.indirect == trace::Indirect::Mesh)
+    plan.caution =
+        "--indirect mesh: the error of the interpolated radiosity is not in the picture's estimate";
+  char text[256];
+  if (c.method == trace::Method::Hybrid && c.solution.empty()) {
+    const bool caustics = features.mirrors || features.rough || features.solids;
+    const double certain = caustics ? error : 2.0 * error;
+    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(certain, 0.01, 0.1);
+    c.solve.quality = certain > 0.06   ? Quality::Draft
+                      : certain > 0.02 ? Quality::Normal
+                                       : Quality::High;
+    // Elements grow with the error, as the noise of what is read from them does.
+    c.solve.max_elements = static_cast<std::uint32_t>(
+        std::clamp(20000.0 * std::pow(0.04 / certain, 1.2), least_elements(scene), 1.5e5));
+    const std::string radiosity = c.solve.error > 0.0 ? "to " + percent(c.solve.error) : "as asked";
+    std::snprintf(text, sizeof text,
+                  "error asked for: radiosity %s on about %u elements%s, %s, up to %d samples",
+                  radiosity.c_str(), c.solve.max_elements,
+                  caustics ? " (caustics are read where they are seen)" : "",
+                  plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
+                                                         : "read behind a bounce (gather)",
+                  plan.samples);
+  } else {
+    std::snprintf(text, sizeof text, "error asked for: up to %d samples of a pixel", plan.samples);
+  }
+  plan.why = text;
+  return plan;
+}
+
+}  // namespace atrium::app

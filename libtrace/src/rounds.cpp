@@ -1,0 +1,137 @@
+#include "rounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "allotment.h"
+#include "picture_error.h"
+
+namespace atrium::trace {
+namespace {
+
+constexpr std::uint32_t kFirst = 2 * kReplicates;  // samples of a pixel before any estimate
+constexpr int kBlock = 8;                          // edge of the blocks of the block error
+constexpr double kAim = 0.97;    // of the target: a round that just misses it costs another one
+constexpr double kGrowth = 2.0;  // of the cost of the picture in one round
+constexpr double kLeast = 1.1;   // an estimate that is about the target needs some more to move
+
+struct Errors {
+  ErrorEstimate pixel, block;
+};
+
+Errors estimate(const PictureSamples& samples) {
+  return {estimate_error(samples), estimate_error(average_blocks(samples, kBlock))};
+}
+
+/// Worse of the two errors, relative to what is asked for.
+double excess(const Errors& e, const RenderOptions& o) {
+  return std::max(o.error > 0.0 ? e.pixel.value / o.error : 0.0,
+                  o.block_error > 0.0 ? e.block.value / o.block_error : 0.0);
+}
+
+std::string remark_of(const Errors& e, const RenderOptions& o) {
+  char text[64];
+  if (o.error > 0.0)
+    std::snprintf(text, sizeof text, "error %.3g %%", 100.0 * e.pixel.value);
+  else
+    std::snprintf(text, sizeof text, "error of blocks %.3g %%", 100.0 * e.block.value);
+  return text;
+}
+
+/// One picture in the making.
+class Rounds {
+ public:
+  Rounds(Film& film, int width, int height, const RenderOptions& options, const Pass& pass,
+         const std::vector<float>& cost, RenderResult& result)
+      : film_(film), options_(options), pass_(pass), cost_(cost), result_(result) {
+    plan_.width = width;
+    plan_.height = height;
+    samples_.assign(cost.size(), 0);
+  }
+
+  /// Passes of doubling size: a picture of the whole view early, few synchronisations later.
+  bool uniform(std::uint32_t samples, double progress_to) {
+    for (std::uint32_t n = 0; n < samples;) {
+      const std::uint32_t next = std::min(samples, n + std::clamp(n, 1U, 16U));
+      std::fill(samples_.begin(), samples_.end(), next);
+      const double share = progress_to / samples;
+      if (!pass_(samples_, {share * n, share * next, {}})) return false;
+      n = next;
+    }
+    result_.stopped_by = "samples";
+    return true;
+  }
+
+  void until_error() {
+    const auto most = static_cast<std::uint32_t>(options_.samples);
+    if (!uniform(std::min(kFirst, most), 0.02)) return;
+    for (Errors now = develop();; now = develop()) {
+      const double e = excess(now, options_);
+      if (!(e > 1.0)) {
+        result_.stopped_by = "error";
+        return;
+      }
+      const double done = 1.0 / (e * e);
+      if (!plan_round(now, e, most)) {
+        result_.stopped_by = "samples";
+        return;
+      }
+      ++result_.rounds;
+      if (!pass_(samples_, {done, std::min(1.0, kGrowth * done), remark_of(now, options_)})) return;
+    }
+  }
+
+  void finish() {
+    const PictureSamples samples = film_.develop();
+    const Errors e = estimate(samples);
+    result_.error_estimate = e.pixel.value;
+    result_.bias_estimate = e.pixel.bias;
+    result_.block_error_estimate = e.block.value;
+    result_.complete = result_.stopped_by == "error" || result_.stopped_by == "samples";
+    result_.image = film_.image(error_layer(samples));
+    film_.count_samples(result_.samples_done, result_.samples_mean);
+  }
+
+ private:
+  Errors develop() { return estimate(film_.develop()); }
+
+  /// false: every pixel has all the samples that it may get.
+  bool plan_round(const Errors& now, double excess, std::uint32_t most) {
+    const ErrorEstimate& e = now.pixel;
+    plan_.noise = e.noise_squares;
+    plan_.bias = e.bias_squares;
+    plan_.count = samples_;
+    plan_.cost = cost_;
+    const double reduce = std::max(excess / kAim, std::sqrt(kLeast));
+    samples_ = allot_samples(plan_, {.goal = e.value / reduce, .growth = kGrowth, .most = most});
+    if (samples_ != plan_.count) return true;
+    // Nothing to tell pixels apart by: all of them.
+    for (std::uint32_t& n : samples_)
+      n = std::min(most, n + static_cast<std::uint32_t>(kReplicates));
+    return samples_ != plan_.count;
+  }
+
+  Film& film_;
+  const RenderOptions& options_;
+  const Pass& pass_;
+  const std::vector<float>& cost_;
+  RenderResult& result_;
+  PixelCosts plan_;
+  std::vector<std::uint32_t> samples_;
+};
+
+}  // namespace
+
+void take_samples(Film& film, int width, int height, const RenderOptions& options, const Pass& pass,
+                  const std::vector<float>& cost, RenderResult& result) {
+  Rounds rounds(film, width, height, options, pass, cost, result);
+  if (options.error > 0.0 || options.block_error > 0.0)
+    rounds.until_error();
+  else
+    rounds.uniform(static_cast<std::uint32_t>(options.samples), 1.0);
+  rounds.finish();
+}
+
+}  // namespace atrium::trace

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "film.h"
+#include "trace/render.h"
+
+namespace atrium::trace {
+
+/// What it takes to bring every pixel to so many samples. \return false: stopped before the end.
+/// \param fraction  progress of the whole picture before and after, and a remark.
+struct PassProgress {
+  double from = 0.0, to = 1.0;
+  std::string remark;
+};
+using Pass = std::function<bool(const std::vector<std::uint32_t>& samples, const PassProgress&)>;
+
+/// Takes samples as the options ask: so many of every pixel, or in rounds until the estimated error
+/// is at the target. Fills in the image and what is said of it (not the counters).
+/// \param pass  draws samples into the film and keeps `cost` [rays per sample by pixel] up to date;
+/// one that stops early sets `stopped_by`.
+void take_samples(Film& film, int width, int height, const RenderOptions& options, const Pass& pass,
+                  const std::vector<float>& cost, RenderResult& result);
+
+}  // namespace atrium::trace

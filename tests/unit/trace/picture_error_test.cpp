@@ -1,0 +1,110 @@
+#include "picture_error.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "error_scale.h"
+
+namespace atrium::trace {
+namespace {
+
+constexpr int kSize = 96;
+constexpr std::size_t kPixels = std::size_t{kSize} * kSize;
+
+/// Uniform light of 1 with known noise of the mean and, if anything is shared, a known bias by
+/// pixel and the noise that sharing has taken away.
+template <class Bias>
+PictureSamples synthetic(double sigma, bool shared, double noise_before, Bias&& bias,
+                         unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  PictureSamples s;
+  s.width = s.height = kSize;
+  s.mean.resize(kPixels);
+  for (auto& d : s.deviation) d.resize(kPixels);
+  if (shared)
+    for (auto& half : s.change)
+      for (auto& c : half) c.resize(kPixels);
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    s.mean[i] = Rgb(static_cast<float>(1.0 + sigma * normal(random)));
+    // Two halves: each has half of the variance.
+    for (auto& d : s.deviation)
+      d[i] = Rgb(static_cast<float>(sigma * std::sqrt(0.5) * normal(random)));
+    if (!shared) continue;
+    for (auto& half : s.change)
+      for (auto& c : half)
+        c[i] = Rgb(static_cast<float>(bias(i) + 2.0 * noise_before * normal(random)));
+  }
+  return s;
+}
+
+// Noise of 3 % of a picture of luminance 1: the scale is 1.05, the error 3 % / 1.05. The estimate
+// of the variance has the relative standard error sqrt(2 / 2 n): 1 %; five of them are allowed.
+TEST(PictureError, FindsTheNoiseOfReplicates) {
+  const ErrorEstimate e = estimate_error(synthetic(
+      0.03, false, 0.0, [](std::size_t) { return 0.0; }, 1));
+  EXPECT_NEAR(e.value * 1.05 / 0.03, 1.0, 0.03);
+  EXPECT_EQ(e.bias, 0.0);
+  double sum = 0.0;
+  for (const float v : e.noise_squares) sum += static_cast<double>(v);
+  EXPECT_NEAR(std::sqrt(sum / kPixels), e.noise, 1e-6);
+}
+
+// A bias that a whole region has is found below the noise of single pixels.
+TEST(PictureError, FindsTheBiasOfSharing) {
+  const auto half_dark = [](std::size_t i) { return i % kSize < kSize / 2 ? -0.02 : 0.0; };
+  const double truth = 0.02 / std::sqrt(2.0) / 1.05;
+  const ErrorEstimate e = estimate_error(synthetic(0.001, true, 0.04, half_dark, 2));
+  EXPECT_NEAR(e.bias / truth, 1.0, 0.15);
+  EXPECT_NEAR(e.value, std::hypot(e.noise, e.bias), 1e-9);
+}
+
+// Where sharing changes nothing but noise, little bias is claimed: the square has the standard
+// error 4 noise^2 / sqrt(2 n) for single pixels, sqrt(25) / 25 of it over squares of 25.
+TEST(PictureError, ClaimsNoBiasThatIsNotThere) {
+  const ErrorEstimate e = estimate_error(synthetic(
+      0.001, true, 0.04, [](std::size_t) { return 0.0; }, 3));
+  EXPECT_LT(e.bias, std::sqrt(3.0 * 4.0 * 0.04 * 0.04 / std::sqrt(2.0 * kPixels) / 5.0));
+}
+
+// One bright sample in one pixel: its error counts in full although it makes its surroundings
+// bright. Mean 1, one pixel of 26 (a bright half of one replicate): the honest scale is 1.05.
+TEST(PictureError, ABrightSampleDoesNotHideItself) {
+  PictureSamples s = synthetic(
+      0.0, false, 0.0, [](std::size_t) { return 0.0; }, 4);
+  const std::size_t middle = kPixels / 2 + kSize / 2;
+  s.mean[middle] = Rgb(26.0f);
+  s.deviation[0][middle] = Rgb(25.0f);
+  const ErrorEstimate e = estimate_error(s);
+  EXPECT_NEAR(e.value, 25.0 / 1.05 / std::sqrt(static_cast<double>(kPixels)), 0.05 * e.value);
+}
+
+// Means of 8x8 pixels with independent noise have an eighth of it; with common noise all of it.
+TEST(PictureError, BlocksKeepWhatPixelsHaveInCommon) {
+  const PictureSamples s = synthetic(
+      0.08, false, 0.0, [](std::size_t) { return 0.0; }, 5);
+  const ErrorEstimate blocks = estimate_error(average_blocks(s, 8));
+  EXPECT_NEAR(blocks.value * 1.05 / 0.01, 1.0, 0.25);  // 144 blocks: 6 % for one standard error
+  PictureSamples common = s;
+  for (auto& d : common.deviation) d.assign(kPixels, Rgb(0.03f));
+  EXPECT_NEAR(estimate_error(average_blocks(common, 8)).value * 1.05, 0.03 * std::sqrt(2.0), 0.001);
+}
+
+// The layer's squares, relative to the scale, have the mean that the estimate has.
+TEST(PictureError, LayerAndEstimateAgree) {
+  const PictureSamples s = synthetic(
+      0.05, false, 0.0, [](std::size_t) { return 0.0; }, 6);
+  const std::vector<Rgb> layer = error_layer(s);
+  std::vector<double> y;
+  for (const Rgb& c : s.mean) y.push_back(static_cast<double>(luminance(c)));
+  const std::vector<double> scale = error_scales(kSize, kSize, y);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kPixels; ++i)
+    sum += std::pow(static_cast<double>(layer[i][1]) / scale[i], 2.0);
+  EXPECT_NEAR(std::sqrt(sum / kPixels), estimate_error(s).value, 0.03 * 0.05);
+}
+
+}  // namespace
+}  // namespace atrium::trace
