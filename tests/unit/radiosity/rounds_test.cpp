@@ -97,6 +97,21 @@ TEST(Regions, HoldEverySideOnceAndFaceAlike) {
   for (const SideIndex i : room.problem->sides.active) EXPECT_EQ(times[i], 1);
 }
 
+// One entry of a coloured path: 2 rays, summed weights 0.2, 0.4 and 0.6 by lane, so a share of 0.2 on
+// average, and 0.2^2 of the variance of what it meets.
+TEST(Rows, ColouredEntriesPassOnVarianceByTheirWeights) {
+  Rows<3> rows;
+  rows.first = {0, 1};
+  rows.entries.resize(1);
+  rows.entries[0] = {1U | Rows<3>::kChromatic, 1.0f, 1.0f, 0};
+  Spectrum<3> weights;
+  for (int lane = 0; lane < 3; ++lane) weights[lane] = 0.2f * static_cast<float>(lane + 1);
+  rows.spectral = {weights};
+  rows.rays = {2};
+  EXPECT_NEAR(rows.mean_weight(rows.entries[0]), 0.4, 1e-6);
+  EXPECT_NEAR(rows.apply_squared(0, {100.0, 4.0}), 0.16, 1e-6);
+}
+
 // Integrals over the square by bent points: f = 1 + x + 2 y has the mean 2.5. A grid of 256 x 256
 // midpoints leaves less than 1e-3 at cells' borders.
 TEST(HemisphereGuide, DensityMakesUpForBentRays) {
