@@ -4,6 +4,12 @@
 //   radiosity_cost SCENE[@N[,N...]]... [--elements N] [--cache DIR] [--docs DIR]
 //
 // @N: about how many elements for this scene, instead of --elements.
+//
+// docs/radiosity-cost.md:
+//   radiosity_cost furnished_room.yaml@20000 white_corridor.yaml@20000 sun_patch.yaml@20000
+//       mirror_atrium.yaml@20000 office_floor.yaml@60000 (all of scenes/benchmark) --errors 0.1
+//       0.05 0.02 --scales 1 --paths 64 256 --receivers 300 --reference-rays 1e7 --shooting 0
+//       --docs docs
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
@@ -126,12 +132,13 @@ class SceneRun {
     }
     sides_ = series.rows.empty() ? 0 : series.rows.back().receivers;
   }
-  /// Element size by the finest of the meshes above, then what the target asks for.
+  /// On as many elements as the finest of the meshes above, none divided.
   void to_errors() {
     CostSeries& series = begin("rows by error, " + count_text(elements_.back()) + " elements");
     for (const double error : options_.errors) {
       Variant v = error_variant(error);
       v.options.max_elements = elements_.back();
+      v.options.max_level = 0;  // two seeds would divide elements differently
       add(series, solve_cost(workload_, patches_, points_, v));
     }
   }
@@ -306,7 +313,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--errors", o.errors, "targets of the solver's own estimate")
       ->capture_default_str();
-  app.add_option("--shooting", o.shares, "unshot flux at which shooting ends")
+  app.add_option("--shooting", o.shares, "unshot flux at which shooting ends; 0: without")
       ->capture_default_str();
   app.add_option("--shooting-elements", o.shooting_elements, "about")->capture_default_str();
   app.add_option("--paths", o.paths, "of the path tracer per receiver")->capture_default_str();
@@ -318,6 +325,7 @@ int main(int argc, char** argv) {
   app.add_option("--cache", cache, "folder for finished references");
   app.add_option("--docs", o.docs, "folder for the page and its plots");
   CLI11_PARSE(app, argc, argv);
+  std::erase_if(o.shares, [](double share) { return !(share > 0.0); });
   o.reference.cache = cache;
   o.reference.max_rays = static_cast<std::uint64_t>(reference_rays);
   try {
