@@ -84,7 +84,7 @@ void measure(const PolygonMesh& mesh, const char* what, const LookOptions& look,
 int main(int argc, char** argv) {
   const int frames = argc > 1 ? std::atoi(argv[1]) : 30;
   try {
-    require_display();
+    const DisplayConnection display;
     const PolygonMesh mesh = Building::make(10, 45);
     LookOptions look;
     look.no_ceilings = true;
