@@ -15,8 +15,9 @@ class SolveParser : public CommandParser {
                         "FILE")
         ->required();
     solver_.add(sub, o_.solve);
-    sub.add_option("--solution", o_.solution,
-                   "go on from this solution: interrupted, or of other diffuse reflectances")
+    sub.add_option(
+           "--solution", o_.solution,
+           "go on from this solution: interrupted, or of other lights or diffuse reflectances")
         ->type_name("FILE.atrium");
     sub.add_flag("--keep-rows", o_.solve.keep_rows,
                  "store the rows in .atrium too: larger, but later runs need not trace them again");

@@ -92,8 +92,7 @@ template <int N>
 bool plan_next_round(RowState<N>& s) {
   const double target = std::pow(kMargin * s.problem.options.error, 2);
   const double caustics = weighted(s, s.result.caustic.variance);
-  bool too_few_photons = caustics > 0.5 * target;
-  if (too_few_photons && more_photons(s)) too_few_photons = false;
+  const bool too_few_photons = caustics > 0.5 * target && !more_photons(s);
   if (s.work.stopped()) return false;
   if (s.gathered.round() == 0) s.brought.end_first_round(s.gathered);
   for (Tally<N>* tally : {&s.direct, &s.gathered, &s.shot})
