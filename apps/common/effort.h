@@ -19,7 +19,7 @@ struct Effort {
 [[nodiscard]] constexpr Effort effort_of(Quality quality) {
   switch (quality) {
     case Quality::Draft:
-      return {16, trace::Indirect::Mesh, 15000, 32, 32, 8, 200000};
+      return {16, trace::Indirect::Gather, 15000, 32, 32, 8, 200000};
     case Quality::Normal:
       return {64, trace::Indirect::Gather, 60000, 64, 128, 16, 1000000};
     case Quality::High:

@@ -1,6 +1,6 @@
 #include "hemisphere.h"
 #include "passes.h"
-#include "segment.h"
+#include "scene/segment.h"
 
 namespace atrium::radiosity {
 namespace {
@@ -19,7 +19,7 @@ class Gatherer {
   std::uint32_t sample(SideIndex i, int replicate, std::uint32_t first, std::uint32_t count,
                        SideSums<N>& sums, Counters& counters) const {
     constexpr std::uint32_t kMost = HemisphereRays<N>::kMost;
-    const HemisphereGuide::Side towards = guide_.side(i);
+    const scene::SquareDensity towards = guide_.side(i);
     std::uint32_t valid = 0;
     for (std::uint32_t done = 0; done < count; done += kMost) {
       const HemisphereRays<N> rays(

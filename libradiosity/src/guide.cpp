@@ -12,66 +12,6 @@ namespace {
 /// A guide that promises less than this is not worth the smoothness that it takes away.
 constexpr double kWorthwhile = 0.8;
 
-/// Density per cell from the mean square per cell: the root (least variance), part of it uniform.
-/// \return  second moment with this density over that with uniform numbers; 1 and no density if
-/// there is nothing.
-double to_density(std::vector<double>& squares) {
-  const auto cells = static_cast<double>(squares.size());
-  double uniform = 0.0;
-  double roots = 0.0;
-  for (double& s : squares) {
-    uniform += s;
-    roots += std::sqrt(s);
-  }
-  if (!(uniform > 0.0)) {
-    squares.clear();
-    return 1.0;
-  }
-  double bent = 0.0;
-  for (double& s : squares) {
-    const double density = kLeastDensity + (1.0 - kLeastDensity) * std::sqrt(s) * cells / roots;
-    bent += s / density;
-    s = density;
-  }
-  return bent / uniform;
-}
-
-template <std::size_t K>
-std::array<std::uint8_t, K> quantised(const std::vector<double>& density) {
-  const double most = *std::max_element(density.begin(), density.end());
-  std::array<std::uint8_t, K> levels;
-  for (std::size_t c = 0; c < K; ++c)
-    levels[c] =
-        static_cast<std::uint8_t>(std::clamp(std::lround(255.0 * density[c] / most), 1L, 255L));
-  return levels;
-}
-
-/// Where sample_cosine_hemisphere() gets a direction from (inverse of the concentric map).
-/// \param w  local, unit, z > 0. \return  in [0, 1)^2.
-Vec2f square_of(const Vec3f& w) {
-  const float r = std::sqrt(std::max(0.0f, 1.0f - w.z() * w.z()));
-  float phi = std::atan2(w.y(), w.x());
-  constexpr float kQuarter = std::numbers::pi_v<float> / 4.0f;
-  if (phi < -kQuarter) phi += 8.0f * kQuarter;
-  float ox = 0.0f;
-  float oy = 0.0f;
-  if (phi < kQuarter) {
-    ox = r;
-    oy = phi * r / kQuarter;
-  } else if (phi < 3.0f * kQuarter) {
-    oy = r;
-    ox = -(phi - 2.0f * kQuarter) * r / kQuarter;
-  } else if (phi < 5.0f * kQuarter) {
-    ox = -r;
-    oy = -(phi - 4.0f * kQuarter) * r / kQuarter;
-  } else {
-    oy = -r;
-    ox = (phi - 6.0f * kQuarter) * r / kQuarter;
-  }
-  const auto unit = [](float o) { return std::clamp(0.5f * (o + 1.0f), 0.0f, 0x1.fffffep-1f); };
-  return {unit(ox), unit(oy)};
-}
-
 /// A surface that rays of a region saw.
 struct Target {
   SideIndex side;
@@ -118,22 +58,6 @@ void keep_brightest(std::vector<Target>& targets) {
   targets.resize(kMostTargets);
 }
 
-/// [1 2 1] along both axes: a target is larger than the point that stands for it.
-void blur(std::vector<double>& cells) {
-  constexpr std::size_t w = HemisphereGuide::kWidth;
-  const auto along = [&](std::size_t step, std::size_t other) {
-    std::array<double, w> line;
-    for (std::size_t l = 0; l < w; ++l) {
-      for (std::size_t k = 0; k < w; ++k) line[k] = cells[l * other + k * step];
-      for (std::size_t k = 0; k < w; ++k)
-        cells[l * other + k * step] =
-            0.25 * (line[k > 0 ? k - 1 : 0] + 2.0 * line[k] + line[k + 1 < w ? k + 1 : w - 1]);
-    }
-  };
-  along(1, w);
-  along(w, 1);
-}
-
 /// What rays of all sides of a region saw, and lane means over them.
 struct Seen {
   std::vector<Target> brightest;
@@ -165,9 +89,7 @@ void look_from_all(std::span<const SideIndex> members, const Rows<N>& rows,
 /// Adds the targets' squares to the cells of the hemisphere over a side where they lie.
 template <int N>
 void project(const Problem<N>& problem, SideIndex i, const std::vector<Target>& targets,
-             std::vector<double>& cells) {
-  constexpr std::size_t w = HemisphereGuide::kWidth;
-  const auto cell = [](float x) { return static_cast<std::size_t>(x * static_cast<float>(w)); };
+             scene::SquareDensity::Squares& cells) {
   const ElementPoints::Spot from = problem.points.spot(i / 2, 0.5f, 0.5f);
   const Frame frame(normal_of(i, problem.points.ng(from.fan)));
   std::uint32_t number = 0;
@@ -179,13 +101,13 @@ void project(const Problem<N>& problem, SideIndex i, const std::vector<Target>& 
     const Vec3f d = problem.points.spot(t.side / 2, u, v).position - from.position;
     const Vec3f local = frame.to_local(d);
     if (!(local.z() > 0.0f)) continue;
-    const Vec2f at = square_of(local / d.norm());
-    cells[cell(at.y()) * w + cell(at.x())] += static_cast<double>(t.square);
+    cells[scene::SquareDensity::cell_of(scene::square_of(local / d.norm()))] +=
+        static_cast<double>(t.square);
   }
 }
 
 /// Variance that a density leaves, as a share of what uniform numbers have: the square of the mean
-/// is no noise. \param moment  of to_density().
+/// is no noise. \param moment  FittedDensity::moment.
 double gain_of(const Seen& seen, double moment) {
   const double variance = std::max(seen.square - seen.mean * seen.mean, 1e-3 * seen.square);
   return 1.0 - (1.0 - moment) * seen.square / variance;
@@ -204,7 +126,7 @@ HemisphereGuide::HemisphereGuide(const Problem<N>& problem, const Regions& regio
   scene::parallel_for(regions.size(), 8, [&](std::size_t begin, std::size_t end) {
     Seen seen;
     std::vector<Target> own;
-    std::vector<double> cells;
+    scene::SquareDensity::Squares cells;
     for (std::size_t r = begin; r < end; ++r) {
       const auto members = regions.members(r);
       look_from_all(members, rows, row_of, radiosity, seen);
@@ -212,16 +134,17 @@ HemisphereGuide::HemisphereGuide(const Problem<N>& problem, const Regions& regio
       for (const SideIndex i : members) {
         own = seen.brightest;
         look(rows, row_of[i], radiosity, 1.0f, own);
-        cells.assign(kWidth * kWidth, 2.0 * seen.rest / (kWidth * kWidth));
+        cells.fill(2.0 * seen.rest / static_cast<double>(cells.size()));
         project(problem, i, own, cells);
-        blur(cells);
-        const double gain = gain_of(seen, to_density(cells));
-        if (cells.empty() || !(gain < kWorthwhile)) {
+        scene::blur(cells);
+        const scene::FittedDensity fitted = scene::fit_density(cells);
+        const double gain = gain_of(seen, fitted.moment);
+        if (!(gain < kWorthwhile)) {
           gains += 1.0;
           continue;
         }
         gains += std::max(gain, 0.05);
-        levels_[i] = quantised<kWidth * kWidth>(cells);
+        levels_[i] = fitted.levels;
       }
       for (const SideIndex i : members)
         gain_[i] = static_cast<float>(gains / static_cast<double>(members.size()));

@@ -19,7 +19,7 @@ class HemisphereRays {
   /// \param count  in [1, kMost]. \param towards  bends the directions; weights make up for it.
   HemisphereRays(const Problem<N>& problem, SideIndex side, std::uint64_t seed,
                  std::uint32_t stream, std::uint32_t first, int count,
-                 const HemisphereGuide::Side& towards = HemisphereGuide::Side(nullptr))
+                 const scene::SquareDensity& towards = scene::SquareDensity(nullptr))
       : problem_(problem), side_(side), seed_(seed), stream_(stream), first_(first), count_(count) {
     std::array<std::array<float, kMost>, 4> u;
     scene::Sampler::fill(seed, stream, first, static_cast<std::size_t>(count),

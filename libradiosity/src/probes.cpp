@@ -5,7 +5,7 @@
 
 #include "follow.h"
 #include "hemisphere.h"
-#include "segment.h"
+#include "scene/segment.h"
 
 namespace atrium::radiosity {
 namespace {

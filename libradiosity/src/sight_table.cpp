@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "scene/parallel.h"
-#include "segment.h"
+#include "scene/segment.h"
 
 namespace atrium::radiosity {
 namespace {

@@ -1,6 +1,6 @@
 #include "visible_share.h"
 
-#include "segment.h"
+#include "scene/segment.h"
 
 namespace atrium::radiosity {
 

@@ -1,6 +1,8 @@
 #include <numbers>
 
+#include "gather_directions.h"
 #include "integrator.h"
+#include "scene/segment.h"
 
 namespace atrium::trace {
 
@@ -74,8 +76,8 @@ struct DirectLight {
 enum class Lobes { Counted, LeftToCaustics };
 template <int N>
 DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& surface,
-                            const Vec3f& wo, bool gathers, Lobes lobes, scene::Sampler& sampler,
-                            scene::Counters& counters) {
+                            const Vec3f& wo, const GatherDirections<N>* gathers, Lobes lobes,
+                            scene::Sampler& sampler, scene::Counters& counters) {
   DirectLight<N> d;
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
@@ -88,7 +90,7 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
   BsdfValue<N> f = surface.bsdf.eval(wo, wi);
   if (lobes == Lobes::LeftToCaustics) f.lobe = Spectrum<N>::zero();
   if (!light->dirac) {
-    if (gathers) f.diffuse *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi, kDiffuseEvents));
+    if (gathers != nullptr) f.diffuse *= mis_weight(light->pdf, gathers->pdf(wi));
     if (!f.lobe.is_zero())
       f.lobe *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi, kSpecularEvents));
   }
@@ -125,6 +127,42 @@ bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int de
   return true;
 }
 
+/// What the body of a surface sends towards a diffuse point. Closer than an element, its mean
+/// direct light is too coarse: look at the lights again. \param straight  nothing but panes lies
+/// between.
+template <int N>
+Spectrum<N> sent_light(const View<N>& view, const scene::SurfacePoint& receiver,
+                       const scene::Interaction<N>& surface, const Vec3f& wo, bool straight,
+                       scene::Sampler& sampler, scene::Counters& counters) {
+  if (!surface.bsdf.has(kDiffuseEvents)) return Spectrum<N>::zero();
+  const bool close = straight && (surface.point.position - receiver.position).norm() <
+                                     element_size(view.field, view.shading.scene(), surface.point);
+  const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
+  Spectrum<N> sent = r.reflected + r.transmitted;
+  if (close) {
+    const DirectLight<N> d =
+        direct_light<N>(view, surface, wo, nullptr, Lobes::LeftToCaustics, sampler, counters);
+    sent += d.reflected + d.transmitted;
+  }
+  return sent;
+}
+
+/// Density [1/sr] of points on bright surfaces, seen from a point that light reaches straight.
+float bright_pdf(float pdf_area, const Vec3f& between, float sender_cosine) {
+  return sender_cosine > 0.0f ? pdf_area * between.squaredNorm() / sender_cosine : 0.0f;
+}
+
+/// The part of a bright surface's light that a gather ray accounts for which met it by chance.
+template <int N>
+float share_of_chance(const View<N>& view, const ScatterVertex& from,
+                      const scene::Interaction<N>& surface) {
+  if (view.bright.empty()) return 1.0f;
+  const float pdf_area = view.bright.pdf(from.position, from.normal, surface.point, surface.side);
+  if (!(pdf_area > 0.0f)) return 1.0f;
+  const Vec3f between = surface.point.position - from.position;
+  return mis_weight(from.pdf, bright_pdf(pdf_area, between, -between.normalized().dot(surface.ng)));
+}
+
 /// One ray from a diffuse point into its hemisphere (or through the sheet): radiance that arrives,
 /// times f cos / pdf. `straight` gets the share that comes directly from a light.
 template <int N>
@@ -133,20 +171,19 @@ struct Gathered {
   bool reflected = true;
 };
 template <int N>
-Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const Vec3f& wo_from,
+Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
+                   const GatherDirections<N>& directions, GatherGuide& guide,
                    scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   Gathered<N> g;
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
-  const auto s = from.bsdf.sample(wo_from, u_choice, u, kDiffuseEvents);
+  const auto s = directions.sample(u_choice, u);
   if (!s) return g;
-  const Vec3f wi = from.to_world(s->wi);
-  if ((s->wi.z() > 0.0f) != (wi.dot(from.ng) > 0.0f)) return g;
-  g.reflected = s->event == kDiffuseReflection;
+  g.reflected = s->reflected;
   ScatterVertex vertex{true, from.point.position, light_normal(from), s->pdf};
   Spectrum<N> beta = s->weight;
-  scene::Ray ray{scene::offset_origin(from.point, wi), wi};
+  scene::Ray ray{scene::offset_origin(from.point, s->wi), s->wi};
   bool straight = true;  // nothing but panes passed so far
   Counter kind = Counter::RaysGather;
 
@@ -166,28 +203,53 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
       const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
       if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
     }
-    // Closer than an element, its mean direct light is too coarse: look at the lights again.
-    const bool close = depth == 0 && surface.bsdf.has(kDiffuseEvents) &&
-                       distance < element_size(view.field, shading.scene(), *hit);
-    const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
-    g.indirect += beta * (r.reflected + r.transmitted);
-    if (close) {
-      const DirectLight<N> d =
-          direct_light(view, surface, wo, false, Lobes::LeftToCaustics, sampler, counters);
-      g.indirect += beta * (d.reflected + d.transmitted);
-    }
+    const Spectrum<N> sent = sent_light(view, from.point, surface, wo, straight, sampler, counters);
+    g.indirect += beta * sent * (straight ? share_of_chance(view, vertex, surface) : 1.0f);
     Event event{};
     if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
     straight &= event == kPaneStraight;
     kind = Counter::RaysSpecular;
   }
+  const float found = (g.straight + g.indirect).mean() * s->density;
+  guide.found(directions.place(), s->where, found * found, s->density);
+  return g;
+}
+
+/// A point of the bright surfaces instead of a direction: what gather rays would rarely meet.
+template <int N>
+Gathered<N> look_at_bright(const View<N>& view, const scene::Interaction<N>& from,
+                           const Vec3f& wo_from, const GatherDirections<N>& directions,
+                           scene::Sampler& sampler, scene::Counters& counters) {
+  const scene::Shading<N>& shading = view.shading;
+  Gathered<N> g;
+  const float u_choice = sampler.next_1d();
+  const Vec2f u = sampler.next_2d();
+  const auto s = view.bright.sample(from.point.position, light_normal(from), u_choice, u);
+  if (!s) return g;
+  const Vec3f between = s->point.position - from.point.position;
+  const Vec3f w = between.normalized();
+  const float sender = w.dot(s->side == Side::Front ? Vec3f(-s->point.ng) : s->point.ng);
+  const float pdf = bright_pdf(s->pdf, between, sender);
+  if (!(pdf > 0.0f)) return g;
+  const Vec3f wi = from.to_local(w);
+  if ((wi.z() > 0.0f) != (w.dot(from.ng) > 0.0f)) return g;
+  const Spectrum<N> f = from.bsdf.eval(wo_from, wi).diffuse;
+  if (f.is_zero()) return g;
+  const Spectrum<N> visible =
+      shading.transmittance(scene::segment(from.point, s->point), counters, Counter::RaysGather);
+  if (visible.is_zero()) return g;
+  const scene::Interaction<N> surface = shading.interact(s->point, -w);
+  const Spectrum<N> sent =
+      sent_light(view, from.point, surface, surface.to_local(-w), true, sampler, counters);
+  g.reflected = wi.z() > 0.0f;
+  g.indirect = f * sent * visible * (std::abs(wi.z()) / pdf * mis_weight(pdf, directions.pdf(wi)));
   return g;
 }
 
 }  // namespace
 
 template <int N>
-PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
+PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, GatherGuide& guide,
                             scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   const bool has_field = view.options.method == Method::Hybrid && !view.field.empty();
@@ -197,9 +259,10 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
   ScatterVertex vertex;
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
-  Event first{};      // what the first surface did
-  Event last{};       // what the previous one did
-  int scattered = 0;  // specular events, straight panes apart
+  Event first{};           // what the first surface did
+  Event last{};            // what the previous one did
+  int scattered = 0;       // specular events, straight panes apart
+  float travelled = 0.0f;  // [m]
 
   // Light that arrives along the specular chain belongs to the term of its first event.
   const auto add = [&](int depth, Term here, const Spectrum<N>& radiance) {
@@ -219,6 +282,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
         add_emission(depth, sky * environment_weight(shading, vertex, ray.direction));
       break;
     }
+    travelled += distance;
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
     beta *= segment_transmittance(shading, surface, ray, distance);
@@ -236,8 +300,12 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
     const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
     if (!emitted.is_zero()) add_emission(depth, emitted * emission_weight(shading, vertex, *hit));
 
-    const DirectLight<N> direct =
-        direct_light(view, surface, wo, gathers, Lobes::Counted, sampler, counters);
+    std::optional<GatherDirections<N>> directions;
+    if (gathers && surface.bsdf.has(kDiffuseEvents))
+      directions.emplace(surface, wo, guide,
+                         guide.place(hit->position, surface.frame.z, view.tile_reach(travelled)));
+    const DirectLight<N> direct = direct_light(
+        view, surface, wo, directions ? &*directions : nullptr, Lobes::Counted, sampler, counters);
     add(depth, Term::DirectReflection, direct.reflected);
     add(depth, Term::DirectTransmission, direct.transmitted);
     if (depth == 0) {
@@ -252,15 +320,17 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
       // What the field knows needs no sharing: what samples find beside it has less shape.
       if (depth == 0 && gathers && view.options.share_samples)
         out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
-      if (gathers) {
-        const Gathered<N> g = gather(view, surface, wo, sampler, counters);
+      const auto take = [&](const Gathered<N>& g) {
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);
         if (depth == 0 && g.reflected) {
           out.body_direct += g.straight;
           out.body_indirect += g.indirect;
         }
-      }
+      };
+      if (directions) take(gather(view, surface, *directions, guide, sampler, counters));
+      if (directions && !view.bright.empty())
+        take(look_at_bright(view, surface, wo, *directions, sampler, counters));
     }
     if (!specular_step(surface, wo, depth, ray, beta, vertex, last, sampler)) break;
     if (depth == 0) first = last;
@@ -270,13 +340,13 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
   return out;
 }
 
-template PixelSample<1> trace_hybrid<1>(const View<1>&, const scene::Ray&, scene::Sampler&,
-                                        scene::Counters&);
-template PixelSample<3> trace_hybrid<3>(const View<3>&, const scene::Ray&, scene::Sampler&,
-                                        scene::Counters&);
-template PixelSample<4> trace_hybrid<4>(const View<4>&, const scene::Ray&, scene::Sampler&,
-                                        scene::Counters&);
-template PixelSample<8> trace_hybrid<8>(const View<8>&, const scene::Ray&, scene::Sampler&,
-                                        scene::Counters&);
+template PixelSample<1> trace_hybrid<1>(const View<1>&, const scene::Ray&, GatherGuide&,
+                                        scene::Sampler&, scene::Counters&);
+template PixelSample<3> trace_hybrid<3>(const View<3>&, const scene::Ray&, GatherGuide&,
+                                        scene::Sampler&, scene::Counters&);
+template PixelSample<4> trace_hybrid<4>(const View<4>&, const scene::Ray&, GatherGuide&,
+                                        scene::Sampler&, scene::Counters&);
+template PixelSample<8> trace_hybrid<8>(const View<8>&, const scene::Ray&, GatherGuide&,
+                                        scene::Sampler&, scene::Counters&);
 
 }  // namespace atrium::trace

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "gather_guide.h"
 #include "pixel_sample.h"
+#include "scene/bright_surfaces.h"
 #include "scene/camera.h"
 #include "scene/sampler.h"
 #include "scene/shading.h"
@@ -14,6 +16,11 @@ struct View {
   const scene::Shading<N>& shading;
   const scene::SurfaceField& field;
   const RenderOptions& options;
+  const scene::BrightSurfaces& bright;  ///< of the field, if gather rays look for its light
+  float tile_near, tile_angle;  ///< edge of a tile of the picture at the camera [m] and its growth
+
+  /// Edge of a tile [m] as seen after so many metres.
+  [[nodiscard]] float tile_reach(float distance) const { return tile_near + tile_angle * distance; }
 };
 
 /// Unbiased path tracing with next event estimation and multiple importance sampling.
@@ -22,9 +29,11 @@ template <int N>
                                         scene::Sampler& sampler, scene::Counters& counters);
 /// Direct light and specular paths; diffuse inter-reflection from the field (Method::Hybrid) or
 /// not at all (Method::Direct).
+/// \param guide  of the ray's tile.
 template <int N>
 [[nodiscard]] PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& ray,
-                                          scene::Sampler& sampler, scene::Counters& counters);
+                                          GatherGuide& guide, scene::Sampler& sampler,
+                                          scene::Counters& counters);
 /// The paper's equation, literally.
 template <int N>
 [[nodiscard]] PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& ray,

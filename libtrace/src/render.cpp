@@ -33,11 +33,19 @@ std::vector<Tile> tiles_of(int width, int height) {
 }
 
 template <int N>
-PixelSample<N> trace(const View<N>& view, const scene::Ray& ray, scene::Sampler& sampler,
-                     scene::Counters& counters) {
+PixelSample<N> trace(const View<N>& view, const scene::Ray& ray, GatherGuide& guide,
+                     scene::Sampler& sampler, scene::Counters& counters) {
   if (view.options.mode == Mode::Paper) return trace_paper(view, ray, sampler, counters);
   if (view.options.method == Method::Path) return trace_path(view, ray, sampler, counters);
-  return trace_hybrid(view, ray, sampler, counters);
+  return trace_hybrid(view, ray, guide, sampler, counters);
+}
+
+/// Edge of a tile in the middle of the picture, at the camera [m] and by how much it grows.
+std::array<float, 2> tile_edge(const scene::Camera& camera, const RenderOptions& o) {
+  const double aspect = static_cast<double>(o.width) / static_cast<double>(o.height);
+  const auto a = camera.ray(Vec2d(0.5, 0.5), aspect);
+  const auto b = camera.ray(Vec2d(0.5, 0.5 + static_cast<double>(kTile) / o.height), aspect);
+  return {(a.origin - b.origin).norm(), (a.direction - b.direction).norm()};
 }
 
 // Workers report through one of them at a time; the others go on.
@@ -66,6 +74,7 @@ class ViewTracer {
         window_(window),
         control_(control),
         tiles_(tiles_of(window.width, window.height)),
+        guides_(tiles_.size()),
         counters_(tiles_.size()) {
     const auto pixels =
         static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
@@ -90,7 +99,8 @@ class ViewTracer {
           late = true;
           continue;
         }
-        trace_tile(tiles_[t], samples, film, counters_[t]);
+        guides_[t].learn();
+        trace_tile(tiles_[t], samples, film, guides_[t], counters_[t]);
         const double share = static_cast<double>(++tiles_done) / static_cast<double>(tiles_.size());
         progress_.report(control_, progress.from + (progress.to - progress.from) * share,
                          progress.remark);
@@ -120,7 +130,7 @@ class ViewTracer {
   }
 
   void trace_tile(const Tile& tile, const std::vector<std::uint32_t>& samples, Film& film,
-                  scene::Counters& counters) {
+                  GatherGuide& guide, scene::Counters& counters) {
     for (int y = tile.y0; y < tile.y1; ++y)
       for (int x = tile.x0; x < tile.x1; ++x) {
         const std::size_t pixel =
@@ -128,12 +138,13 @@ class ViewTracer {
             static_cast<std::size_t>(x);
         const std::uint64_t before = counters.rays();
         for (; done_[pixel] < samples[pixel]; ++done_[pixel])
-          trace_sample(x, y, done_[pixel], film, counters);
+          trace_sample(x, y, done_[pixel], film, guide, counters);
         rays_[pixel] += counters.rays() - before;
       }
   }
 
-  void trace_sample(int x, int y, std::uint32_t number, Film& film, scene::Counters& counters) {
+  void trace_sample(int x, int y, std::uint32_t number, Film& film, GatherGuide& guide,
+                    scene::Counters& counters) {
     const RenderOptions& o = view_.options;
     const int px = x + window_.x0;  // pixel of the whole image: a crop shows the same samples
     const int py = y + window_.y0;
@@ -147,7 +158,7 @@ class ViewTracer {
                       (py + static_cast<double>(jitter.y())) / o.height);
     const double aspect = static_cast<double>(o.width) / static_cast<double>(o.height);
     const scene::Camera::CameraRay r = camera_.ray(place, aspect);
-    film.add(x, y, replicate, trace(view_, {r.origin, r.direction}, sampler, counters),
+    film.add(x, y, replicate, trace(view_, {r.origin, r.direction}, guide, sampler, counters),
              view_.shading.basis(), counters);
   }
 
@@ -157,6 +168,7 @@ class ViewTracer {
   const scene::Control& control_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<Tile> tiles_;
+  std::vector<GatherGuide> guides_;        // by tile
   std::vector<scene::Counters> counters_;  // by tile
   std::vector<std::uint32_t> done_;        // samples by pixel
   std::vector<std::uint64_t> rays_;        // by pixel
@@ -170,7 +182,12 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
                           const scene::Camera& camera, const scene::SurfaceField& field,
                           const RenderOptions& options, const scene::Control& control) {
   const scene::Shading<N> shading(query, basis);
-  const View<N> view{shading, field, options};
+  const bool gathers = options.method == Method::Hybrid && options.mode == Mode::Radiometric &&
+                       options.indirect == Indirect::Gather;
+  const scene::BrightSurfaces bright =
+      gathers ? scene::BrightSurfaces(query.scene(), field) : scene::BrightSurfaces();
+  const auto [tile_near, tile_angle] = tile_edge(camera, options);
+  const View<N> view{shading, field, options, bright, tile_near, tile_angle};
   const PixelWindow window = pixel_window(options);
   // Blocks average already; sharing would add its bias and take hardly any noise.
   const bool blocks_only = options.block_error > 0.0 && !(options.error > 0.0);

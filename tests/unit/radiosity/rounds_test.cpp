@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "error_control.h"
-#include "guide.h"
 #include "material/spectral_basis.h"
+#include "rows.h"
 #include "scene/ray_query.h"
 #include "tally.h"
 #include "unit/radiosity/box_scene.h"
@@ -110,33 +110,6 @@ TEST(Rows, ColouredEntriesPassOnVarianceByTheirWeights) {
   rows.rays = {2};
   EXPECT_NEAR(rows.mean_weight(rows.entries[0]), 0.4, 1e-6);
   EXPECT_NEAR(rows.apply_squared(0, {100.0, 4.0}), 0.16, 1e-6);
-}
-
-// Integrals over the square by bent points: f = 1 + x + 2 y has the mean 2.5. A grid of 256 x 256
-// midpoints leaves less than 1e-3 at cells' borders.
-TEST(HemisphereGuide, DensityMakesUpForBentRays) {
-  HemisphereGuide::Levels levels;
-  for (std::size_t k = 0; k < levels.size(); ++k)
-    levels[k] = static_cast<std::uint8_t>(1 + (k * 37) % 255);
-  const HemisphereGuide::Side side(&levels);
-  ASSERT_FALSE(side.uniform());
-  constexpr int kGrid = 256;
-  double sum = 0.0;
-  double ones = 0.0;
-  for (int i = 0; i < kGrid; ++i)
-    for (int j = 0; j < kGrid; ++j) {
-      float u = (static_cast<float>(i) + 0.5f) / kGrid;
-      float v = (static_cast<float>(j) + 0.5f) / kGrid;
-      const double density = static_cast<double>(side(u, v));
-      ASSERT_GT(density, 0.0);
-      ASSERT_TRUE(u >= 0.0f && u < 1.0f && v >= 0.0f && v < 1.0f);
-      sum += (1.0 + static_cast<double>(u) + 2.0 * static_cast<double>(v)) / density;
-      ones += 1.0 / density;
-    }
-  // Cells of the lowest level get less than one row of the grid: a tenth of a percent is what that
-  // leaves of a mean over 64 cells.
-  EXPECT_NEAR(ones / (kGrid * kGrid), 1.0, 0.05);
-  EXPECT_NEAR(sum / (kGrid * kGrid), 2.5, 0.125);
 }
 
 // One stratum of equal sides: n samples of variance 1 each make V = 1 / n; joined with V0 = 1 / n0
