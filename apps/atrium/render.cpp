@@ -14,6 +14,7 @@
 #include "scene/output_file.h"
 #include "scene/solution_io.h"
 #include "statistics.h"
+#include "trace/strategy.h"
 
 namespace atrium::app {
 namespace fs = std::filesystem;
@@ -150,9 +151,9 @@ trace::RenderOptions render_options(const Session& session, const RenderCommand&
   trace::RenderOptions o;
   o.method = c.method;
   o.mode = c.mode;
-  o.indirect = effort.indirect;
+  o.indirect = c.classes ? trace::Indirect::Gather : effort.indirect;
   // After an interrupt the picture is one cheap sample of what was solved until then.
-  if (session.interrupted()) o.indirect = trace::Indirect::Mesh;
+  if (session.interrupted() && !c.classes) o.indirect = trace::Indirect::Mesh;
   const auto [width, height] = size_for(c, camera);
   o.width = width;
   o.height = height;
@@ -163,6 +164,7 @@ trace::RenderOptions render_options(const Session& session, const RenderCommand&
   o.time_limit = time_limit;
   o.seed = c.solve.seed;
   o.components = c.components;
+  o.classes = c.classes;
   o.share_samples = !c.no_filter;
   return o;
 }
@@ -285,6 +287,17 @@ void render_view(Session& session, const RenderCommand& c, const PictureEffort& 
   statistics.views.push_back(std::move(view));
 }
 
+/// How the reference finds light, and what of it it does not.
+void explain_reference(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+                       Statistics& statistics) {
+  if (c.method != trace::Method::Path) return;
+  statistics.reference = trace::choose_strategy(*loaded.scene);
+  const trace::PathStrategy& s = *statistics.reference;
+  session.detail((s.from_lights ? "needed:  " : "skipped: ") + std::string("paths from lights: ") +
+                 s.reason);
+  for (const std::string& m : s.missing) session.progress.warning("not in the picture: " + m);
+}
+
 void warn_about_counts(Session& session, const scene::Counters& counters) {
   if (const auto n = counters[scene::Counter::SamplesDropped]; n > 0) {
     session.progress.warning(std::to_string(n) + " samples were not finite and were dropped");
@@ -321,6 +334,7 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   const PictureEffort effort = plan_effort(with_views, *loaded.scene, loaded.features);
   if (!effort.why.empty()) session.detail(effort.why);
   if (!effort.caution.empty()) session.progress.warning(effort.caution);
+  explain_reference(session, c, loaded, statistics);
   statistics.picture_target = c.error;
   statistics.block_target = c.block_error;
   with_views.solve.views = views_of(c, jobs);

@@ -70,6 +70,7 @@ template <int N>
 struct DirectLight {
   Spectrum<N> reflected, transmitted;
   Spectrum<N> body;  ///< share of `reflected` by the body
+  Spectrum<N> lobe;  ///< share of both by the lobe
 };
 enum class Lobes { Counted, LeftToCaustics };
 template <int N>
@@ -98,6 +99,7 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
       unoccluded * view.shading.visibility(surface.point, *light, counters, Counter::RaysShadow);
   (wi.z() > 0.0f ? d.reflected : d.transmitted) = f.sum() * arriving;
   if (wi.z() > 0.0f) d.body = f.diffuse * arriving;
+  d.lobe = f.lobe * arriving;
   return d;
 }
 
@@ -130,6 +132,7 @@ bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int de
 template <int N>
 struct Gathered {
   Spectrum<N> straight, indirect;
+  Spectrum<N> once, caustic;  ///< of `indirect`: first reflections of lights, and of caustics
   bool reflected = true;
 };
 template <int N>
@@ -171,10 +174,17 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
                        distance < element_size(view.field, shading.scene(), *hit);
     const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
     g.indirect += beta * (r.reflected + r.transmitted);
+    if (view.options.classes) {
+      const FieldRadiance<N> once = field_radiance(view, surface, wo, {!close, false, false});
+      const FieldRadiance<N> caustic = field_radiance(view, surface, wo, {false, true, false});
+      g.once += beta * (once.reflected + once.transmitted);
+      g.caustic += beta * (caustic.reflected + caustic.transmitted);
+    }
     if (close) {
       const DirectLight<N> d =
           direct_light(view, surface, wo, false, Lobes::LeftToCaustics, sampler, counters);
       g.indirect += beta * (d.reflected + d.transmitted);
+      g.once += beta * (d.reflected + d.transmitted);
     }
     Event event{};
     if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
@@ -205,7 +215,14 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
   const auto add = [&](int depth, Term here, const Spectrum<N>& radiance) {
     out[depth == 0 ? here : term_of(first, false)] += beta * radiance;
   };
+  // The same by class of light paths. \param unseen  the class without a specular chain at the eye.
+  const auto add_class = [&](LightClass unseen, const Spectrum<N>& radiance) {
+    const std::size_t seen = scattered > 0 ? 1U : 0U;
+    if (view.options.classes)
+      out.light_class[static_cast<std::size_t>(unseen) + seen] += beta * radiance;
+  };
   const auto add_emission = [&](int depth, const Spectrum<N>& radiance) {
+    add_class(LightClass::LE, radiance);
     const bool highlight = scattered == 1 && (first & kLobeEvents) != 0;
     out[depth == 0 ? Term::Emission : term_of(first, highlight)] += beta * radiance;
   };
@@ -240,6 +257,9 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
         direct_light(view, surface, wo, gathers, Lobes::Counted, sampler, counters);
     add(depth, Term::DirectReflection, direct.reflected);
     add(depth, Term::DirectTransmission, direct.transmitted);
+    add_class(LightClass::LDE, direct.reflected + direct.transmitted - direct.lobe);
+    if (view.options.classes)
+      out.light_class[static_cast<std::size_t>(LightClass::LSE)] += beta * direct.lobe;
     if (depth == 0) {
       out.position = hit->position;
       out.body_albedo = surface.bsdf.diffuse_reflectance(wo);
@@ -249,6 +269,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
       const FieldRadiance<N> r = field_radiance(view, surface, wo, {false, true, !gathers});
       add(depth, Term::IndirectReflection, r.reflected);
       add(depth, Term::IndirectTransmission, r.transmitted);
+      add_class(LightClass::LSDE, r.reflected + r.transmitted);
       // What the field knows needs no sharing: what samples find beside it has less shape.
       if (depth == 0 && gathers && view.options.share_samples)
         out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
@@ -256,6 +277,10 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
         const Gathered<N> g = gather(view, surface, wo, sampler, counters);
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);
+        add_class(LightClass::LDE, g.straight);
+        add_class(LightClass::LDDE, g.once);
+        add_class(LightClass::LSDDE, g.caustic);
+        add_class(LightClass::LDDDE, g.indirect - g.once - g.caustic);
         if (depth == 0 && g.reflected) {
           out.body_direct += g.straight;
           out.body_indirect += g.indirect;
