@@ -77,6 +77,7 @@ struct RenderCommand {
   trace::ToneMapOptions tone;
   std::string solution;  ///< read
   std::string save_solution;
+  std::string checkpoint;  ///< read if it is there, written
 };
 
 /// How files for other programs are written.

@@ -40,6 +40,9 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   if (o.mode == trace::Mode::Paper || o.method == trace::Method::Path) {
     refuse("--no-filter", "--method path and --mode paper never share samples");
   }
+  if (o.method != trace::Method::Path)
+    refuse("--checkpoint", "only --method path goes on from one; --save-solution keeps radiosity");
+  if (o.camera == "all") refuse("--checkpoint", "holds one picture, not one of every camera");
   if (o.mode == trace::Mode::Paper) refuse("--classes", "paper mode knows terms, not paths");
   if (o.indirect == IndirectChoice::Mesh)
     refuse("--classes", "the mesh does not tell classes apart: --indirect gather does");
@@ -138,6 +141,10 @@ class RenderParser : public CommandParser {
                    "rays), auto: mesh for drafts")
         ->check(CLI::IsMember({"auto", "mesh", "gather"}))
         ->capture_default_str();
+    app.add_option("--checkpoint", o_.checkpoint,
+                   "keep the state of a --method path picture here, and go on from it if it is "
+                   "there")
+        ->type_name("FILE");
     app.add_flag("--components", o_.components, "layers C1..C6 in .exr");
     app.add_flag("--classes", o_.classes,
                  "layers by class of light paths (LDE, LSDE, ...) in .exr, with standard errors");

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "material/error.h"
+#include "picture_checkpoint.h"
 #include "picture_effort.h"
 #include "radiosity_pass.h"
 #include "scene/image_io.h"
@@ -44,6 +45,11 @@ void check_outputs(const RenderCommand& c) {
       throw Error(c.save_solution + ": a solution file ends with .atrium");
     }
     scene::check_output(c.save_solution);
+  }
+  if (!c.checkpoint.empty()) {
+    scene::check_output(c.checkpoint);
+    if (!seen.insert(fs::weakly_canonical(fs::absolute(c.checkpoint))).second)
+      throw Error(c.checkpoint + ": is given twice");
   }
   if (!c.common.stats.empty()) scene::check_output(c.common.stats);
 }
@@ -220,6 +226,9 @@ std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedSc
   if (packs.size() > 1 && !(c.solution.empty() && c.save_solution.empty()))
     throw Error("--spectrum: a solution file holds up to " + std::to_string(kMaxLanes) +
                 " lanes, not " + std::to_string(whole.lanes()));
+  if (packs.size() > 1 && !c.checkpoint.empty())
+    throw Error("--checkpoint: holds up to " + std::to_string(kMaxLanes) + " lanes, not " +
+                std::to_string(whole.lanes()));
   for (std::size_t i = 0; i < packs.size(); ++i) {
     const double limit = time_share(session, c, 0.5 / static_cast<double>(packs.size() - i));
     loaded.basis = packs[i].basis;
@@ -235,7 +244,10 @@ trace::RenderResult trace_packs(Session& session, const RenderCommand& c,
   trace::RenderResult result;
   for (std::size_t i = 0; i < packs.size(); ++i) {
     const double limit = time_share(session, c, share / static_cast<double>(packs.size() - i));
-    const trace::RenderOptions options = render_options(session, c, effort, job.camera, limit);
+    trace::RenderOptions options = render_options(session, c, effort, job.camera, limit);
+    std::optional<PictureCheckpoint> checkpoint;
+    if (!c.checkpoint.empty())
+      checkpoint.emplace(session, c, loaded, job.camera, options).attach(options);
     trace::RenderResult part = trace::render(*loaded.query, packs[i].basis, job.camera,
                                              packs[i].field, options, session.control("render"));
     if (i == 0)

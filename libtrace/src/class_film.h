@@ -32,9 +32,12 @@ class ClassFilm {
     const auto& y = pixels_[pixel].luminance[static_cast<std::size_t>(c)];
     return y[2 * half] - y[2 * half + 1];
   }
+  /// As Film::archive().
   template <class Archive>
-  void archive(Archive& a) {
+  bool archive(Archive& a) {
+    const std::size_t n = pixels_.size();
     a(pixels_);
+    return pixels_.size() == n;
   }
 
  private:

@@ -82,7 +82,8 @@ void Film::add(int x, int y, std::size_t replicate, const PixelSample<N>& sample
   if (!bodies_.empty()) add_body(bodies_[i], p, replicate, sample, basis);
   move_mean(p.albedo, basis.to_rgb(sample.albedo), n);
   move_mean(p.irradiance, basis.to_rgb(sample.irradiance), n);
-  p.normal += (sample.normal - p.normal) / n;
+  for (std::size_t c = 0; c < 3; ++c)
+    p.normal[c] += (sample.normal[static_cast<int>(c)] - p.normal[c]) / n;
   if (sample.depth > 0.0f) {
     ++p.hits;
     p.depth += (sample.depth - p.depth) / static_cast<float>(p.hits);
@@ -110,7 +111,7 @@ ShareGuides Film::guides() const {
   ShareGuides g{width_, height_, {}, {}, {}};
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     g.position.push_back(bodies_[i].position);
-    g.normal.push_back(pixels_[i].normal);
+    g.normal.emplace_back(pixels_[i].normal.data());
     g.depth.push_back(usable(i) ? pixels_[i].depth : 0.0f);
   }
   return g;
@@ -286,8 +287,7 @@ scene::Image Film::image(const std::vector<Rgb>& error) const {
     put(error[i]);
     put(p.albedo);
     put(p.irradiance);
-    put(make_rgb(static_cast<double>(p.normal.x()), static_cast<double>(p.normal.y()),
-                 static_cast<double>(p.normal.z())));
+    image.pixels.insert(image.pixels.end(), p.normal.begin(), p.normal.end());
     image.pixels.push_back(p.depth);
     image.pixels.push_back(static_cast<float>(p.count));
     if (!terms_.empty())

@@ -42,6 +42,20 @@ class Film {
   PictureSamples develop();
   /// All layers, as last developed. \param error  for stderr.*.
   [[nodiscard]] scene::Image image(const std::vector<Rgb>& error) const;
+  /// All state of a film that shares nothing, for scene::ArchiveWriter and ArchiveReader.
+  /// \return does it fit this film?
+  template <class Archive>
+  bool archive(Archive& a) {
+    static_assert(sizeof(Pixel) == 136, "archived as it is: no padding");
+    const std::size_t n = pixels_.size(), with_terms = terms_.size();
+    a(pixels_);
+    a(terms_);
+    bool fits = pixels_.size() == n && terms_.size() == with_terms;
+    if (classes_) fits &= classes_->archive(a);
+    if (splats_) fits &= splats_->archive(a);
+    return fits;
+  }
+
   /// Smallest and mean number of samples of a pixel, of those that count.
   void count_samples(int& least, double& mean) const;
 
@@ -51,7 +65,7 @@ class Film {
     std::array<Rgb, kReplicates> replicate;
     std::array<std::uint32_t, kReplicates> replicate_count{};
     Rgb albedo, irradiance;
-    Vec3f normal = Vec3f::Zero();
+    std::array<float, 3> normal{};
     float depth = 0.0f;
     std::uint32_t count = 0;
     std::uint32_t hits = 0;

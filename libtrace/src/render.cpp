@@ -13,6 +13,7 @@
 #include "integrator.h"
 #include "material/error.h"
 #include "rounds.h"
+#include "scene/archive.h"
 #include "scene/parallel.h"
 #include "trace/camera_window.h"
 #include "trace/strategy.h"
@@ -80,17 +81,29 @@ class ViewTracer {
     cost_.assign(pixels, 1.0f);
   }
 
+  /// All state between two pieces of work, as Film::archive() has it.
+  template <class Archive>
+  bool archive(Archive& a) {
+    const std::size_t pixels = done_.size(), tiles = counters_.size();
+    a(done_);
+    a(rays_);
+    a(counters_);
+    a(piece_);
+    first_ = false;
+    return done_.size() == pixels && rays_.size() == pixels && counters_.size() == tiles;
+  }
+
   /// As Pass has it.
   bool pass(const std::vector<std::uint32_t>& samples, const PassProgress& progress, Film& film,
             RenderResult& result) {
     late_ = interrupted_ = false;
+    if (samples_at_once(samples) == 0) return true;  // all done before this rendering went on
     if (from_lights_)
       pass_in_pieces(samples, progress, film);
     else
       pass_by_tiles(samples, progress, film);
     first_ = false;
-    for (std::size_t i = 0; i < done_.size(); ++i)
-      cost_[i] = static_cast<float>(rays_[i]) / static_cast<float>(std::max(done_[i], 1U));
+    update_cost();
     if (interrupted_)
       result.stopped_by = "interrupt";
     else if (late_)
@@ -98,6 +111,10 @@ class ViewTracer {
     return !interrupted_ && !late_;
   }
 
+  void update_cost() {
+    for (std::size_t i = 0; i < done_.size(); ++i)
+      cost_[i] = static_cast<float>(rays_[i]) / static_cast<float>(std::max(done_[i], 1U));
+  }
   [[nodiscard]] const std::vector<float>& cost() const { return cost_; }
   [[nodiscard]] scene::Counters counters() const {
     scene::Counters sum;
@@ -128,11 +145,12 @@ class ViewTracer {
   void pass_by_tiles(const std::vector<std::uint32_t>& samples, const PassProgress& progress,
                      Film& film) {
     std::atomic<std::size_t> tiles_done = 0;
+    const std::uint32_t all = samples_at_once(samples);
     scene::parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
       LightWork work;
       for (std::size_t t = begin; t < end; ++t) {
         if (stopped()) continue;
-        trace_tile(tiles_[t], samples, samples_at_once(samples), work, film, counters_[t]);
+        trace_tile(tiles_[t], samples, all, work, film, counters_[t]);
         report(progress, static_cast<double>(++tiles_done) / static_cast<double>(tiles_.size()));
       }
     });
@@ -141,13 +159,14 @@ class ViewTracer {
   /// What paths from lights show is added after each piece, in the order of the tiles.
   void pass_in_pieces(const std::vector<std::uint32_t>& samples, const PassProgress& progress,
                       Film& film) {
-    const std::uint32_t rounds = (samples_at_once(samples) + kSamplesAtOnce - 1) / kSamplesAtOnce;
-    const std::size_t pieces = (tiles_.size() + kTilesAtOnce - 1) / kTilesAtOnce;
+    const std::uint64_t pieces = (tiles_.size() + kTilesAtOnce - 1) / kTilesAtOnce;
     std::vector<LightWork> work(std::min(kTilesAtOnce, tiles_.size()));
-    for (std::uint32_t round = 0; round < rounds; ++round)
-      for (std::size_t piece = 0; piece < pieces; ++piece) {
+    while (const std::uint32_t most = samples_at_once(samples)) {
+      if (piece_.next == piece_.end)
+        piece_ = {0, pieces * ((most + kSamplesAtOnce - 1) / kSamplesAtOnce)};
+      for (; piece_.next < piece_.end; ++piece_.next) {
         if (stopped()) return;
-        const std::size_t first = piece * kTilesAtOnce;
+        const std::size_t first = (piece_.next % pieces) * kTilesAtOnce;
         const std::size_t count = std::min(kTilesAtOnce, tiles_.size() - first);
         scene::parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i)
@@ -159,9 +178,9 @@ class ViewTracer {
           work[i].splats.clear();
           work[i].paths = {};
         }
-        report(progress,
-               (round + static_cast<double>(piece + 1) / static_cast<double>(pieces)) / rounds);
+        report(progress, static_cast<double>(piece_.next + 1) / static_cast<double>(piece_.end));
       }
+    }
   }
 
   /// Most samples that one pixel is to get.
@@ -249,9 +268,30 @@ class ViewTracer {
   std::vector<std::uint32_t> done_;        // samples by pixel
   std::vector<std::uint64_t> rays_;        // by pixel
   std::vector<float> cost_;                // [rays per sample]
+  struct Piece {
+    std::uint64_t next = 0, end = 0;
+  } piece_;  // of pass_in_pieces()
   SerialProgress progress_;
   std::atomic<bool> late_ = false, interrupted_ = false;
   bool first_ = true;
+};
+
+/// Hands over a picture's state now and then.
+class Saver {
+ public:
+  explicit Saver(const RenderOptions& options) : options_(options) {}
+  [[nodiscard]] bool due() const {
+    constexpr std::chrono::seconds kEvery(60);
+    return options_.save_state && std::chrono::steady_clock::now() - last_ > kEvery;
+  }
+  void save(const std::vector<char>& state) {
+    options_.save_state(state);
+    last_ = std::chrono::steady_clock::now();
+  }
+
+ private:
+  const RenderOptions& options_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 bool traces_from_lights(const scene::Scene& scene, const RenderOptions& o) {
@@ -279,13 +319,34 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
              .shares = shares,
              .splats = from_lights});
   ViewTracer<N> tracer(view, eye, from_lights, control);
+  RoundState rounds;
+  const auto archive = [&](auto& a) {
+    const bool fits = film.archive(a) && tracer.archive(a);
+    a(rounds.rounds);
+    a(rounds.samples);
+    return fits;
+  };
+  if (options.state != nullptr) {
+    scene::ArchiveReader reader(
+        options.state->data(), options.state->data() + options.state->size(), "state of a picture");
+    if (!archive(reader) || rounds.samples.size() != tracer.cost().size()) reader.damaged();
+    tracer.update_cost();
+  }
+  Saver saver(options);
+  const auto save = [&] {
+    scene::ArchiveWriter writer;
+    archive(writer);
+    saver.save(writer.bytes);
+  };
   RenderResult result;
   take_samples(
       film, window.width, window.height, options,
       [&](const std::vector<std::uint32_t>& samples, const PassProgress& progress) {
+        if (saver.due()) save();
         return tracer.pass(samples, progress, film, result);
       },
-      tracer.cost(), result);
+      tracer.cost(), rounds, result);
+  if (options.save_state) save();
   result.counters = tracer.counters();
   return result;
 }
@@ -302,6 +363,8 @@ void check(const scene::SurfaceField& field, const material::SpectralBasis& basi
   if (o.classes && (o.mode == Mode::Paper ||
                     (o.method == Method::Hybrid && !field.empty() && o.indirect == Indirect::Mesh)))
     throw std::invalid_argument("render: the classes of light paths cannot be told apart");
+  if (o.method != Method::Path && (o.save_state || o.state != nullptr))
+    throw std::invalid_argument("render: only path tracing goes on from a state");
   if (o.mode == Mode::Paper && o.method == Method::Path)
     throw std::invalid_argument("render: paper mode has no path tracer, it is not a BSDF");
 }

@@ -25,14 +25,17 @@ class SplatFilm {
   [[nodiscard]] Rgb deviation(std::size_t pixel, std::size_t half) const;
   [[nodiscard]] float class_deviation(std::size_t pixel, LightClass c, std::size_t half) const;
 
-  /// All state, for scene::ArchiveWriter and ArchiveReader.
+  /// As Film::archive().
   template <class Archive>
-  void archive(Archive& a) {
+  bool archive(Archive& a) {
+    const std::size_t n = picture_.size(), terms = terms_.size(), classes = classes_.size();
     a(paths_);
     a(picture_);
     a(terms_);
     a(classes_);
     a(class_luminance_);
+    return picture_.size() == n && terms_.size() == terms && classes_.size() == classes &&
+           class_luminance_.size() == classes;
   }
 
  private:

@@ -91,10 +91,15 @@ PathStrategy choose_strategy(const scene::Scene& scene) {
   }
   s.from_lights = found.receivers && (found.dirac || found.sharp) &&
                   (found.points || found.suns || found.lamp_in_glass || small_lamps);
-  if (found.receivers && found.dirac && found.points)
-    s.missing.emplace_back(
-        "LSDSE, LSDDSE, LDDDSE: light of lights without a size that reaches every diffuse surface "
-        "of its path by smooth mirrors or glass and leaves it the same way");
+  if (found.receivers && found.dirac && (found.points || found.suns)) {
+    const std::string whose = !found.points ? "nearly all light of the sun"
+                              : !found.suns
+                                  ? "light of lights without a size"
+                                  : "light of lights without a size, nearly all of the sun's,";
+    s.missing.push_back("LSDSE, LSDDSE, LDDDSE: " + whose +
+                        " that reaches every diffuse surface of its path by smooth mirrors or "
+                        "glass and leaves it the same way");
+  }
   return s;
 }
 

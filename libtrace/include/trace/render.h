@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "material/spectral_basis.h"
 #include "scene/camera.h"
@@ -58,6 +60,12 @@ struct RenderOptions {
   bool share_samples = true;
   bool components = false;  ///< layers C1..C6 and emission
   bool classes = false;     ///< layers by class of light paths (trace/light_classes.h)
+  /// Takes what a later rendering needs to go on as if there had been no end: about once a minute
+  /// and at the end. Method::Path only.
+  std::function<void(const std::vector<char>& state)> save_state;
+  /// State to go on from, of the same scene, basis, camera and options (samples, errors and time
+  /// limit apart); null: from the beginning. Method::Path only.
+  const std::vector<char>* state = nullptr;
 };
 
 struct RenderResult {
@@ -79,6 +87,7 @@ struct RenderResult {
 
 /// Renders one view. Deterministic for a scene, options and seed at any thread count (time limits
 /// and interrupts apart).
+/// \throws Error  for a state that does not fit.
 /// \throws std::invalid_argument  also for classes that cannot be told apart: Indirect::Mesh with a
 /// field, paper mode.
 /// \param field  may be empty: then there is no diffuse inter-reflection. Method::Hybrid only.
