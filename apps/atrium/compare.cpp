@@ -35,6 +35,10 @@ void print_text(const trace::Comparison& r) {
   for (const trace::TermComparison& t : r.terms)
     std::printf("%-12s %8.3f %% of the light, difference %+.3f %%\n", t.name.c_str(),
                 100.0 * t.share, 100.0 * t.difference);
+  for (const trace::ClassComparison& t : r.classes)
+    std::printf("%-12s %8.3f %% of the light, difference %+.3f +- %.3f %%, RMS %.3f %%\n",
+                t.name.c_str(), 100.0 * t.share, 100.0 * t.difference, 100.0 * t.interval,
+                100.0 * t.rms);
   if (!r.noise_known) std::printf("the reference has no stderr.* layers: its noise is included\n");
   if (r.pixels_skipped > 0)
     std::printf("%zu pixels are not finite and were skipped\n", r.pixels_skipped);
@@ -62,6 +66,16 @@ void print_json(const trace::Comparison& r) {
     json.begin_object(t.name.c_str());
     json.member("share", t.share);
     json.member("difference", t.difference);
+    json.end();
+  }
+  json.end();
+  json.begin_object("classes");
+  for (const trace::ClassComparison& t : r.classes) {
+    json.begin_object(t.name.c_str());
+    json.member("share", t.share);
+    json.member("difference", t.difference);
+    json.member("interval", t.interval);
+    json.member("rms", t.rms);
     json.end();
   }
   json.end();

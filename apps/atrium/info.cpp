@@ -302,15 +302,20 @@ void info_scene(const InfoCommand& c, std::stop_token stop, Report& r) {
   add_load_report(scene.report, r);
   if (const auto share = coplanar_share(scene); share && (r.json() || *share > 0.0))
     r.add("area under another surface in its plane", *share);
+  const trace::PathStrategy reference = trace::choose_strategy(scene);
   if (r.json()) {
     add_features(r.writer, loaded.features);
+    add_reference(r.writer, reference);
   } else {
     std::vector<std::string> needed, skipped;
     for (const scene::Decision& d : scene::decide(loaded.features)) {
       (d.needed ? needed : skipped).push_back(d.what + ": " + d.reason);
     }
+    (reference.from_lights ? needed : skipped)
+        .push_back("paths from lights (--method path): " + reference.reason);
     r.list("needed", needed);
     r.list("skipped", skipped);
+    r.list("not found by --method path", reference.missing);
   }
   r.list("warnings", scene.report.warnings);
 }

@@ -47,10 +47,10 @@ struct SolveSettings {
   double time_limit = 0.0;    ///< [s] for everything but writing; 0: none
   double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
-  double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
+  double error = 0.0;              ///< RMS of irradiance asked for; 0: the effort of the quality
   std::uint32_t max_elements = 0;  ///< 0: as the quality
-  int probes = 0;              ///< points of the certificate
-  bool paper_weights = false;  ///< --mode paper
+  int probes = 0;                  ///< points of the certificate
+  bool paper_weights = false;      ///< --mode paper
   scene::Grouping light_groups = scene::Grouping::One;
   bool keep_state = false;         ///< a solution is written, from which a later run may go on
   bool keep_rows = false;          ///< with the rows
@@ -72,10 +72,12 @@ struct RenderCommand {
   double error = 0.0;        ///< RMS of the picture asked for, per pixel; 0: none
   double block_error = 0.0;  ///< ... after averaging 8x8 pixels
   bool components = false;
+  bool classes = false;  ///< layers by class of light paths
   bool no_filter = false;
   trace::ToneMapOptions tone;
   std::string solution;  ///< read
   std::string save_solution;
+  std::string checkpoint;  ///< read if it is there, written
 };
 
 /// How files for other programs are written.

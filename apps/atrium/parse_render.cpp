@@ -40,6 +40,13 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   if (o.mode == trace::Mode::Paper || o.method == trace::Method::Path) {
     refuse("--no-filter", "--method path and --mode paper never share samples");
   }
+  if (o.method != trace::Method::Path)
+    refuse("--checkpoint", "only --method path goes on from one; --save-solution keeps radiosity");
+  if (o.camera == "all") refuse("--checkpoint", "holds one picture, not one of every camera");
+  if (o.mode == trace::Mode::Paper) refuse("--classes", "paper mode knows terms, not paths");
+  if (o.indirect == IndirectChoice::Mesh)
+    refuse("--classes", "the mesh does not tell classes apart: --indirect gather does");
+  if (o.classes) refuse("--no-filter", "--classes never shares samples");
   if (o.mode == trace::Mode::Paper) {
     refuse("--indirect", "paper mode reads its ambient light from the mesh");
   }
@@ -50,7 +57,8 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   }
   if (!any_output(o,
                   [](const std::filesystem::path& f) { return scene::file_ending(f) == ".exr"; })) {
-    refuse("--components", "only .exr holds layers: there is no such output");
+    for (const char* name : {"--components", "--classes"})
+      refuse(name, "only .exr holds layers: there is no such output");
   }
   if (!o.solution.empty()) {
     refuse("--save-solution", "there is nothing new to save with --solution");
@@ -114,16 +122,18 @@ class RenderParser : public CommandParser {
         ->capture_default_str();
   }
   void add_effort(CLI::App& app) {
-    app.add_option("--error", o_.error,
-                   "go on until the RMS error of pixels is below this share of the picture (0.02: 2 "
-                   "%); 0: the samples of --quality")
+    app.add_option(
+           "--error", o_.error,
+           "go on until the RMS error of pixels is below this share of the picture (0.02: 2 "
+           "%); 0: the samples of --quality")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     app.add_option("--error-block", o_.block_error, "the same after averaging 8x8 pixels")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    app.add_option("--samples", o_.samples,
-                   "of a pixel; 0: from the quality (16, 64, 256); with an error asked for the most")
+    app.add_option(
+           "--samples", o_.samples,
+           "of a pixel; 0: from the quality (16, 64, 256); with an error asked for the most")
         ->check(CLI::Range(0, 1 << 24))
         ->capture_default_str();
     app.add_option("--indirect", indirect_,
@@ -131,7 +141,13 @@ class RenderParser : public CommandParser {
                    "rays), auto: mesh for drafts")
         ->check(CLI::IsMember({"auto", "mesh", "gather"}))
         ->capture_default_str();
+    app.add_option("--checkpoint", o_.checkpoint,
+                   "keep the state of a --method path picture here, and go on from it if it is "
+                   "there")
+        ->type_name("FILE");
     app.add_flag("--components", o_.components, "layers C1..C6 in .exr");
+    app.add_flag("--classes", o_.classes,
+                 "layers by class of light paths (LDE, LSDE, ...) in .exr, with standard errors");
     app.add_flag("--no-filter", o_.no_filter, "do not share samples between neighbouring pixels");
     app.add_option("--solution", o_.solution, "use this radiosity solution instead of solving")
         ->type_name("FILE.atrium");

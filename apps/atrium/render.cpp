@@ -8,12 +8,14 @@
 
 #include "commands.h"
 #include "material/error.h"
+#include "picture_checkpoint.h"
 #include "picture_effort.h"
 #include "radiosity_pass.h"
 #include "scene/image_io.h"
 #include "scene/output_file.h"
 #include "scene/solution_io.h"
 #include "statistics.h"
+#include "trace/strategy.h"
 
 namespace atrium::app {
 namespace fs = std::filesystem;
@@ -43,6 +45,11 @@ void check_outputs(const RenderCommand& c) {
       throw Error(c.save_solution + ": a solution file ends with .atrium");
     }
     scene::check_output(c.save_solution);
+  }
+  if (!c.checkpoint.empty()) {
+    scene::check_output(c.checkpoint);
+    if (!seen.insert(fs::weakly_canonical(fs::absolute(c.checkpoint))).second)
+      throw Error(c.checkpoint + ": is given twice");
   }
   if (!c.common.stats.empty()) scene::check_output(c.common.stats);
 }
@@ -150,9 +157,9 @@ trace::RenderOptions render_options(const Session& session, const RenderCommand&
   trace::RenderOptions o;
   o.method = c.method;
   o.mode = c.mode;
-  o.indirect = effort.indirect;
+  o.indirect = c.classes ? trace::Indirect::Gather : effort.indirect;
   // After an interrupt the picture is one cheap sample of what was solved until then.
-  if (session.interrupted()) o.indirect = trace::Indirect::Mesh;
+  if (session.interrupted() && !c.classes) o.indirect = trace::Indirect::Mesh;
   const auto [width, height] = size_for(c, camera);
   o.width = width;
   o.height = height;
@@ -163,6 +170,7 @@ trace::RenderOptions render_options(const Session& session, const RenderCommand&
   o.time_limit = time_limit;
   o.seed = c.solve.seed;
   o.components = c.components;
+  o.classes = c.classes;
   o.share_samples = !c.no_filter;
   return o;
 }
@@ -218,6 +226,9 @@ std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedSc
   if (packs.size() > 1 && !(c.solution.empty() && c.save_solution.empty()))
     throw Error("--spectrum: a solution file holds up to " + std::to_string(kMaxLanes) +
                 " lanes, not " + std::to_string(whole.lanes()));
+  if (packs.size() > 1 && !c.checkpoint.empty())
+    throw Error("--checkpoint: holds up to " + std::to_string(kMaxLanes) + " lanes, not " +
+                std::to_string(whole.lanes()));
   for (std::size_t i = 0; i < packs.size(); ++i) {
     const double limit = time_share(session, c, 0.5 / static_cast<double>(packs.size() - i));
     loaded.basis = packs[i].basis;
@@ -233,7 +244,10 @@ trace::RenderResult trace_packs(Session& session, const RenderCommand& c,
   trace::RenderResult result;
   for (std::size_t i = 0; i < packs.size(); ++i) {
     const double limit = time_share(session, c, share / static_cast<double>(packs.size() - i));
-    const trace::RenderOptions options = render_options(session, c, effort, job.camera, limit);
+    trace::RenderOptions options = render_options(session, c, effort, job.camera, limit);
+    std::optional<PictureCheckpoint> checkpoint;
+    if (!c.checkpoint.empty())
+      checkpoint.emplace(session, c, loaded, job.camera, options).attach(options);
     trace::RenderResult part = trace::render(*loaded.query, packs[i].basis, job.camera,
                                              packs[i].field, options, session.control("render"));
     if (i == 0)
@@ -285,6 +299,17 @@ void render_view(Session& session, const RenderCommand& c, const PictureEffort& 
   statistics.views.push_back(std::move(view));
 }
 
+/// How the reference finds light, and what of it it does not.
+void explain_reference(Session& session, const RenderCommand& c, const LoadedScene& loaded,
+                       Statistics& statistics) {
+  if (c.method != trace::Method::Path) return;
+  statistics.reference = trace::choose_strategy(*loaded.scene);
+  const trace::PathStrategy& s = *statistics.reference;
+  session.detail((s.from_lights ? "needed:  " : "skipped: ") + std::string("paths from lights: ") +
+                 s.reason);
+  for (const std::string& m : s.missing) session.progress.warning("not in the picture: " + m);
+}
+
 void warn_about_counts(Session& session, const scene::Counters& counters) {
   if (const auto n = counters[scene::Counter::SamplesDropped]; n > 0) {
     session.progress.warning(std::to_string(n) + " samples were not finite and were dropped");
@@ -321,6 +346,7 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   const PictureEffort effort = plan_effort(with_views, *loaded.scene, loaded.features);
   if (!effort.why.empty()) session.detail(effort.why);
   if (!effort.caution.empty()) session.progress.warning(effort.caution);
+  explain_reference(session, c, loaded, statistics);
   statistics.picture_target = c.error;
   statistics.block_target = c.block_error;
   with_views.solve.views = views_of(c, jobs);

@@ -50,6 +50,16 @@ void add_features(JsonWriter& json, const scene::Features& f) {
   json.end();
 }
 
+void add_reference(JsonWriter& json, const trace::PathStrategy& s) {
+  json.begin_object("reference");
+  json.member("paths_from_lights", s.from_lights);
+  json.member("reason", s.reason);
+  json.begin_array("missing");
+  for (const std::string& m : s.missing) json.element(m);
+  json.end();
+  json.end();
+}
+
 std::string describe(const ProbeSummary& c) {
   const auto percent = [](double share) {
     char text[32];
@@ -240,6 +250,7 @@ void write_statistics(Session& session, const LoadedScene& loaded, const Statist
   add_error(json, s);
   add_solve(json, s);
   if (!s.views.empty()) add_views(json, s);
+  if (s.reference) add_reference(json, *s.reference);
   json.begin_object("scene");
   json.member("triangles", loaded.scene->triangle_count());
   json.member("objects", static_cast<std::uint64_t>(loaded.scene->objects.size()));

@@ -10,6 +10,7 @@
 #include "scene/counters.h"
 #include "scene/features.h"
 #include "session.h"
+#include "trace/strategy.h"
 
 namespace atrium::app {
 
@@ -65,6 +66,7 @@ struct Statistics {
   std::optional<SolveSummary> solve;
   std::string radiosity_skipped;  ///< the reason, if it was
   std::vector<ViewSummary> views;
+  std::optional<trace::PathStrategy> reference;     ///< of --method path
   double picture_target = 0.0, block_target = 0.0;  ///< errors asked for; 0: none
   std::uint64_t seed = 1;
 };
@@ -74,6 +76,9 @@ void write_statistics(Session& session, const LoadedScene& loaded, const Statist
 
 /// Members of an open object: features, and decisions with reasons.
 void add_features(JsonWriter& json, const scene::Features& features);
+
+/// Member "reference" of an open object: how --method path finds light, and what it misses.
+void add_reference(JsonWriter& json, const trace::PathStrategy& strategy);
 
 /// Writes text to a file, complete or absent. \throws Error, RuntimeFailure
 void write_text(const std::string& text, const std::string& file);

@@ -1,11 +1,13 @@
 #include "trace/compare.h"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "error_scale.h"
 #include "rgb_planes.h"
+#include "trace/light_classes.h"
 
 namespace atrium::trace {
 
@@ -218,6 +220,48 @@ void add_terms(const scene::Image& a, const scene::Image& b, const Planes& p, Co
   }
 }
 
+/// One channel of a layer; nullopt: the image has none.
+std::optional<int> channel_of(const scene::Image& image, const std::string& name) {
+  const int i = image.channel_index(name);
+  return i < 0 ? std::nullopt : std::optional(i);
+}
+
+std::optional<ClassComparison> compare_class(const scene::Image& a, const scene::Image& b,
+                                             const std::string& name, const Planes& p,
+                                             double whole) {
+  if (!RgbPlanes::present(a, name + ".") || !RgbPlanes::present(b, name + ".")) return std::nullopt;
+  const auto error_a = channel_of(a, "stderr." + name + ".Y");
+  const auto error_b = channel_of(b, "stderr." + name + ".Y");
+  if (!error_a || !error_b) return std::nullopt;
+  const RgbPlanes image(a, name + "."), reference(b, name + ".");
+  double count = 0.0, of_image = 0.0, of_reference = 0.0, squares = 0.0, noise = 0.0;
+  for (std::size_t i = 0; i < p.valid.size(); ++i) {
+    if (p.valid[i] == 0) continue;
+    const int x = static_cast<int>(i % static_cast<std::size_t>(p.width));
+    const int y = static_cast<int>(i / static_cast<std::size_t>(p.width));
+    const double one = image.luminance(i), two = reference.luminance(i);
+    count += 1.0;
+    of_image += one;
+    of_reference += two;
+    squares += (one - two) * (one - two);
+    noise += std::pow(static_cast<double>(a.at(x, y, *error_a)), 2.0) +
+             std::pow(static_cast<double>(b.at(x, y, *error_b)), 2.0);
+  }
+  if (!(count > 0.0)) return std::nullopt;
+  return ClassComparison{name, relative(of_reference / count, whole),
+                         relative((of_image - of_reference) / count, whole),
+                         relative(kNormal95 * std::sqrt(noise) / count, whole),
+                         relative(root((squares - noise) / count), whole)};
+}
+
+void add_classes(const scene::Image& a, const scene::Image& b, const Planes& p,
+                 Comparison& result) {
+  const double whole = mean_luminance(RgbPlanes(b, ""), p);
+  for (const std::string_view name : kLightClassNames)
+    if (const auto c = compare_class(a, b, std::string(name), p, whole))
+      result.classes.push_back(*c);
+}
+
 }  // namespace
 
 Comparison compare(const scene::Image& image, const scene::Image& reference) {
@@ -226,6 +270,7 @@ Comparison compare(const scene::Image& image, const scene::Image& reference) {
   result.noise_known = RgbPlanes::present(reference, "stderr.");
   add_bias(image, reference, planes, result);
   add_terms(image, reference, planes, result);
+  add_classes(image, reference, planes, result);
   result.pixel = measure(planes, kTile, result.pixel_noise, &result.max_abs);
   result.block = measure(block_average(planes), kTile / kBlock, result.block_noise, nullptr);
   return result;

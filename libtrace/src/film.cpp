@@ -14,14 +14,22 @@ void move_mean(Rgb& mean, const Rgb& value, float n) { mean += (value - mean) / 
 
 }  // namespace
 
-Film::Film(int width, int height, bool components, bool shares) : width_(width), height_(height) {
+Film::Film(int width, int height, const Contents& contents) : width_(width), height_(height) {
   const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   pixels_.resize(n);
-  if (components) terms_.resize(n);
-  if (shares) {
+  if (contents.components) terms_.resize(n);
+  if (contents.classes) classes_.emplace(n);
+  if (contents.splats) splats_.emplace(n, contents.components, contents.classes);
+  if (contents.shares) {
     bodies_.resize(n);
     changes_.resize(n);
   }
+}
+
+void Film::add_splats(const std::vector<Splat>& splats,
+                      const std::array<std::uint64_t, kReplicates>& paths) {
+  splats_->add(splats);
+  splats_->count(paths);
 }
 
 template <int N>
@@ -65,10 +73,17 @@ void Film::add(int x, int y, std::size_t replicate, const PixelSample<N>& sample
   if (!terms_.empty())
     for (std::size_t t = 0; t < kTerms; ++t)
       move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
+  if (classes_) {
+    std::array<Rgb, kLightClasses> classes;
+    for (std::size_t c = 0; c < kLightClasses; ++c)
+      classes[c] = basis.to_rgb(sample.light_class[c]);
+    classes_->add(i, replicate, classes, n, static_cast<float>(p.replicate_count[replicate]));
+  }
   if (!bodies_.empty()) add_body(bodies_[i], p, replicate, sample, basis);
   move_mean(p.albedo, basis.to_rgb(sample.albedo), n);
   move_mean(p.irradiance, basis.to_rgb(sample.irradiance), n);
-  p.normal += (sample.normal - p.normal) / n;
+  for (std::size_t c = 0; c < 3; ++c)
+    p.normal[c] += (sample.normal[static_cast<int>(c)] - p.normal[c]) / n;
   if (sample.depth > 0.0f) {
     ++p.hits;
     p.depth += (sample.depth - p.depth) / static_cast<float>(p.hits);
@@ -96,7 +111,7 @@ ShareGuides Film::guides() const {
   ShareGuides g{width_, height_, {}, {}, {}};
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     g.position.push_back(bodies_[i].position);
-    g.normal.push_back(pixels_[i].normal);
+    g.normal.emplace_back(pixels_[i].normal.data());
     g.depth.push_back(usable(i) ? pixels_[i].depth : 0.0f);
   }
   return g;
@@ -152,23 +167,33 @@ void Film::take_shared(std::size_t i, std::size_t part, const Illumination& ligh
   }
 }
 
-void Film::put_samples(std::size_t i, PictureSamples& samples) const {
+Rgb Film::mean(std::size_t i) const {
   const Pixel& p = pixels_[i];
   Rgb mean = make_rgb(p.mean[0], p.mean[1], p.mean[2]);
-  std::array<Rgb, kReplicates> value = p.replicate;
-  if (!changes_.empty()) {
+  if (!changes_.empty())
     for (const Rgb& change : changes_[i].part) mean += change;
+  if (splats_) mean += splats_->mean(i, kPictureLayer);
+  return mean;
+}
+
+// E (x - y)^2 = s^2 (1/a + 1/b) for means of a and b samples; their joint mean has s^2 / (a + b)
+// and weighs (a + b) / n.
+float Film::replicate_factor(std::size_t i, std::size_t half) const {
+  const Pixel& p = pixels_[i];
+  const auto a = static_cast<float>(p.replicate_count[2 * half]);
+  const auto b = static_cast<float>(p.replicate_count[2 * half + 1]);
+  return p.count > 0 ? std::sqrt(a * b) / static_cast<float>(p.count) : 0.0f;
+}
+
+void Film::put_samples(std::size_t i, PictureSamples& samples) const {
+  std::array<Rgb, kReplicates> value = pixels_[i].replicate;
+  if (!changes_.empty())
     for (std::size_t r = 0; r < kReplicates; ++r) value[r] += changes_[i].replicate[r];
-  }
-  samples.mean[i] = mean;
-  const auto n = static_cast<float>(p.count);
+  samples.mean[i] = mean(i);
   for (std::size_t h = 0; h < 2; ++h) {
-    const auto a = static_cast<float>(p.replicate_count[2 * h]);
-    const auto b = static_cast<float>(p.replicate_count[2 * h + 1]);
-    // E (x - y)^2 = s^2 (1/a + 1/b) for means of a and b samples; their joint mean has s^2 / (a +
-    // b) and weighs (a + b) / n.
-    const float factor = n > 0.0f ? std::sqrt(a * b) / n : 0.0f;
-    samples.deviation[h][i] = (value[2 * h] - value[2 * h + 1]) * factor;
+    Rgb& deviation = samples.deviation[h][i];
+    deviation = (value[2 * h] - value[2 * h + 1]) * replicate_factor(i, h);
+    if (splats_) deviation += splats_->deviation(i, h);
     if (changes_.empty()) continue;
     for (std::size_t k = 0; k < 2; ++k) samples.change[h][k][i] = changes_[i].replicate[2 * h + k];
   }
@@ -190,6 +215,7 @@ PictureSamples Film::develop() {
 
 Rgb Film::term(std::size_t i, std::size_t term) const {
   Rgb value = terms_[i][term];
+  if (splats_) value += splats_->mean(i, layer_of(static_cast<Term>(term)));
   if (changes_.empty()) return value;
   if (term == static_cast<std::size_t>(Term::DirectReflection)) value += changes_[i].part[0];
   if (term == static_cast<std::size_t>(Term::IndirectReflection)) value += changes_[i].part[1];
@@ -207,46 +233,70 @@ void Film::count_samples(int& least, double& mean) const {
   mean = sum / static_cast<double>(pixels_.size());
 }
 
-scene::Image Film::image(const std::vector<Rgb>& error) const {
-  static constexpr const char* kRgb[3] = {"R", "G", "B"};
-  static constexpr const char* kXyz[3] = {"X", "Y", "Z"};
+Rgb Film::class_mean(std::size_t i, LightClass c) const {
+  Rgb value = classes_->mean(i, c);
+  if (splats_) value += splats_->mean(i, layer_of(c));
+  return value;
+}
+
+float Film::class_error(std::size_t i, LightClass c) const {
+  float squares = 0.0f;
+  for (std::size_t h = 0; h < 2; ++h) {
+    float d = classes_->difference(i, c, h) * replicate_factor(i, h);
+    if (splats_) d += splats_->class_deviation(i, c, h);
+    squares += d * d;
+  }
+  return std::sqrt(squares);
+}
+
+std::vector<std::string> Film::layer_names() const {
   static constexpr const char* kTermNames[kTerms] = {"C1", "C2", "C3",      "C4",
                                                      "C5", "C6", "emission"};
+  std::vector<std::string> names{"R", "G", "B"};
+  const auto add = [&](const std::string& layer, const char* parts) {
+    for (; *parts != 0; ++parts) names.push_back(layer + "." + *parts);
+  };
+  add("stderr", "RGB");
+  add("albedo", "RGB");
+  add("irradiance", "RGB");
+  add("normal", "XYZ");
+  add("depth", "Z");
+  add("samples", "N");
+  if (!terms_.empty())
+    for (const char* t : kTermNames) add(t, "RGB");
+  if (classes_)
+    for (const std::string_view c : kLightClassNames) {
+      add(std::string(c), "RGB");
+      add("stderr." + std::string(c), "Y");
+    }
+  return names;
+}
+
+scene::Image Film::image(const std::vector<Rgb>& error) const {
   scene::Image image;
   image.width = width_;
   image.height = height_;
-  const auto name = [&](const std::string& layer, const char* const(&parts)[3]) {
-    for (const char* part : parts) image.channels.push_back(layer + "." + part);
-  };
-  for (const char* c : kRgb) image.channels.emplace_back(c);
-  name("stderr", kRgb);
-  name("albedo", kRgb);
-  name("irradiance", kRgb);
-  name("normal", kXyz);
-  image.channels.emplace_back("depth.Z");
-  image.channels.emplace_back("samples.N");
-  if (!terms_.empty())
-    for (const char* t : kTermNames) name(t, kRgb);
-
+  image.channels = layer_names();
   image.pixels.reserve(pixels_.size() * image.channels.size());
   const auto put = [&](const Rgb& c) {
     image.pixels.insert(image.pixels.end(), c.lane.begin(), c.lane.end());
   };
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Pixel& p = pixels_[i];
-    Rgb mean = make_rgb(p.mean[0], p.mean[1], p.mean[2]);
-    if (!changes_.empty())
-      for (const Rgb& change : changes_[i].part) mean += change;
-    put(mean);
+    put(mean(i));
     put(error[i]);
     put(p.albedo);
     put(p.irradiance);
-    put(make_rgb(static_cast<double>(p.normal.x()), static_cast<double>(p.normal.y()),
-                 static_cast<double>(p.normal.z())));
+    image.pixels.insert(image.pixels.end(), p.normal.begin(), p.normal.end());
     image.pixels.push_back(p.depth);
     image.pixels.push_back(static_cast<float>(p.count));
     if (!terms_.empty())
       for (std::size_t t = 0; t < kTerms; ++t) put(term(i, t));
+    if (!classes_) continue;
+    for (std::size_t c = 0; c < kLightClasses; ++c) {
+      put(class_mean(i, static_cast<LightClass>(c)));
+      image.pixels.push_back(class_error(i, static_cast<LightClass>(c)));
+    }
   }
   return image;
 }

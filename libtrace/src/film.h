@@ -1,33 +1,61 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "class_film.h"
 #include "material/spectral_basis.h"
 #include "picture_samples.h"
 #include "pixel_sample.h"
 #include "scene/counters.h"
 #include "scene/image.h"
 #include "share.h"
+#include "splat_film.h"
 
 namespace atrium::trace {
 
 /// Running means of all layers; every pixel belongs to one task at a time.
 class Film {
  public:
-  /// \param shares  keeps what sharing between pixels needs.
-  Film(int width, int height, bool components, bool shares);
+  /// What there is to keep.
+  struct Contents {
+    bool components = false;
+    bool classes = false;
+    bool shares = false;  ///< what sharing between pixels needs
+    bool splats = false;  ///< of paths from lights
+  };
+  Film(int width, int height, const Contents& contents);
 
   /// \param replicate  below kReplicates: which of the independent sets the sample is of.
   template <int N>
   void add(int x, int y, std::size_t replicate, const PixelSample<N>& sample,
            const material::SpectralBasis& basis, scene::Counters& counters);
 
+  /// What paths from lights show, in the order of the calls. \param paths  that were traced, by
+  /// replicate.
+  void add_splats(const std::vector<Splat>& splats,
+                  const std::array<std::uint64_t, kReplicates>& paths);
+
   /// Shares the samples of the first surfaces' body light between pixels, anew from all samples
   /// there are, and says what picture that is.
   PictureSamples develop();
   /// All layers, as last developed. \param error  for stderr.*.
   [[nodiscard]] scene::Image image(const std::vector<Rgb>& error) const;
+  /// All state of a film that shares nothing, for scene::ArchiveWriter and ArchiveReader.
+  /// \return does it fit this film?
+  template <class Archive>
+  bool archive(Archive& a) {
+    static_assert(sizeof(Pixel) == 136, "archived as it is: no padding");
+    const std::size_t n = pixels_.size(), with_terms = terms_.size();
+    a(pixels_);
+    a(terms_);
+    bool fits = pixels_.size() == n && terms_.size() == with_terms;
+    if (classes_) fits &= classes_->archive(a);
+    if (splats_) fits &= splats_->archive(a);
+    return fits;
+  }
+
   /// Smallest and mean number of samples of a pixel, of those that count.
   void count_samples(int& least, double& mean) const;
 
@@ -37,7 +65,7 @@ class Film {
     std::array<Rgb, kReplicates> replicate;
     std::array<std::uint32_t, kReplicates> replicate_count{};
     Rgb albedo, irradiance;
-    Vec3f normal = Vec3f::Zero();
+    std::array<float, 3> normal{};
     float depth = 0.0f;
     std::uint32_t count = 0;
     std::uint32_t hits = 0;
@@ -66,7 +94,12 @@ class Film {
   [[nodiscard]] std::vector<Rgb> share_weights() const;
   void share();
   void take_shared(std::size_t pixel, std::size_t part, const Illumination& light);
+  [[nodiscard]] Rgb mean(std::size_t pixel) const;
   [[nodiscard]] Rgb term(std::size_t pixel, std::size_t term) const;
+  [[nodiscard]] float replicate_factor(std::size_t pixel, std::size_t half) const;
+  [[nodiscard]] Rgb class_mean(std::size_t pixel, LightClass c) const;
+  [[nodiscard]] float class_error(std::size_t pixel, LightClass c) const;
+  [[nodiscard]] std::vector<std::string> layer_names() const;
   void put_samples(std::size_t pixel, PictureSamples& samples) const;
 
   int width_, height_;
@@ -74,6 +107,8 @@ class Film {
   std::vector<Body> bodies_;                    // empty if nothing is shared
   std::vector<Change> changes_;                 // as last developed; empty as bodies_
   std::vector<std::array<Rgb, kTerms>> terms_;  // empty without components
+  std::optional<ClassFilm> classes_;
+  std::optional<SplatFilm> splats_;
 };
 
 }  // namespace atrium::trace

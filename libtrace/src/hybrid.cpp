@@ -72,6 +72,7 @@ template <int N>
 struct DirectLight {
   Spectrum<N> reflected, transmitted;
   Spectrum<N> body;  ///< share of `reflected` by the body
+  Spectrum<N> lobe;  ///< share of both by the lobe
 };
 enum class Lobes { Counted, LeftToCaustics };
 template <int N>
@@ -100,6 +101,7 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
       unoccluded * view.shading.visibility(surface.point, *light, counters, Counter::RaysShadow);
   (wi.z() > 0.0f ? d.reflected : d.transmitted) = f.sum() * arriving;
   if (wi.z() > 0.0f) d.body = f.diffuse * arriving;
+  d.lobe = f.lobe * arriving;
   return d;
 }
 
@@ -127,22 +129,37 @@ bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int de
   return true;
 }
 
+/// What the body of a surface sends on: all, and of that the first reflections of lights and of
+/// caustics, for classes of light.
+template <int N>
+struct SentLight {
+  Spectrum<N> all, once, caustic;
+};
 /// What the body of a surface sends towards a diffuse point. Closer than an element, its mean
 /// direct light is too coarse: look at the lights again. \param straight  nothing but panes lies
 /// between.
 template <int N>
-Spectrum<N> sent_light(const View<N>& view, const scene::SurfacePoint& receiver,
-                       const scene::Interaction<N>& surface, const Vec3f& wo, bool straight,
-                       scene::Sampler& sampler, scene::Counters& counters) {
-  if (!surface.bsdf.has(kDiffuseEvents)) return Spectrum<N>::zero();
+SentLight<N> sent_light(const View<N>& view, const scene::SurfacePoint& receiver,
+                        const scene::Interaction<N>& surface, const Vec3f& wo, bool straight,
+                        scene::Sampler& sampler, scene::Counters& counters) {
+  SentLight<N> sent;
+  if (!surface.bsdf.has(kDiffuseEvents)) return sent;
   const bool close = straight && (surface.point.position - receiver.position).norm() <
                                      element_size(view.field, view.shading.scene(), surface.point);
-  const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
-  Spectrum<N> sent = r.reflected + r.transmitted;
+  const auto of_field = [&](Parts parts) {
+    const FieldRadiance<N> r = field_radiance(view, surface, wo, parts);
+    return r.reflected + r.transmitted;
+  };
+  sent.all = of_field({!close, true, true});
+  if (view.options.classes) {
+    sent.once = of_field({!close, false, false});
+    sent.caustic = of_field({false, true, false});
+  }
   if (close) {
     const DirectLight<N> d =
         direct_light<N>(view, surface, wo, nullptr, Lobes::LeftToCaustics, sampler, counters);
-    sent += d.reflected + d.transmitted;
+    sent.all += d.reflected + d.transmitted;
+    sent.once += d.reflected + d.transmitted;
   }
   return sent;
 }
@@ -168,7 +185,14 @@ float share_of_chance(const View<N>& view, const ScatterVertex& from,
 template <int N>
 struct Gathered {
   Spectrum<N> straight, indirect;
+  Spectrum<N> once, caustic;  ///< of `indirect`: first reflections of lights, and of caustics
   bool reflected = true;
+
+  void take(const SentLight<N>& sent, const Spectrum<N>& weight) {
+    indirect += weight * sent.all;
+    once += weight * sent.once;
+    caustic += weight * sent.caustic;
+  }
 };
 template <int N>
 Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
@@ -203,8 +227,9 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
       const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
       if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
     }
-    const Spectrum<N> sent = sent_light(view, from.point, surface, wo, straight, sampler, counters);
-    g.indirect += beta * sent * (straight ? share_of_chance(view, vertex, surface) : 1.0f);
+    const SentLight<N> sent =
+        sent_light(view, from.point, surface, wo, straight, sampler, counters);
+    g.take(sent, straight ? beta * share_of_chance(view, vertex, surface) : beta);
     Event event{};
     if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
     straight &= event == kPaneStraight;
@@ -239,10 +264,9 @@ Gathered<N> look_at_bright(const View<N>& view, const scene::Interaction<N>& fro
       shading.transmittance(scene::segment(from.point, s->point), counters, Counter::RaysGather);
   if (visible.is_zero()) return g;
   const scene::Interaction<N> surface = shading.interact(s->point, -w);
-  const Spectrum<N> sent =
-      sent_light(view, from.point, surface, surface.to_local(-w), true, sampler, counters);
   g.reflected = wi.z() > 0.0f;
-  g.indirect = f * sent * visible * (std::abs(wi.z()) / pdf * mis_weight(pdf, directions.pdf(wi)));
+  g.take(sent_light(view, from.point, surface, surface.to_local(-w), true, sampler, counters),
+         f * visible * (std::abs(wi.z()) / pdf * mis_weight(pdf, directions.pdf(wi))));
   return g;
 }
 
@@ -268,7 +292,14 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
   const auto add = [&](int depth, Term here, const Spectrum<N>& radiance) {
     out[depth == 0 ? here : term_of(first, false)] += beta * radiance;
   };
+  // The same by class of light paths. \param unseen  the class without a specular chain at the eye.
+  const auto add_class = [&](LightClass unseen, const Spectrum<N>& radiance) {
+    const std::size_t seen = scattered > 0 ? 1U : 0U;
+    if (view.options.classes)
+      out.light_class[static_cast<std::size_t>(unseen) + seen] += beta * radiance;
+  };
   const auto add_emission = [&](int depth, const Spectrum<N>& radiance) {
+    add_class(LightClass::LE, radiance);
     const bool highlight = scattered == 1 && (first & kLobeEvents) != 0;
     out[depth == 0 ? Term::Emission : term_of(first, highlight)] += beta * radiance;
   };
@@ -308,6 +339,9 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
         view, surface, wo, directions ? &*directions : nullptr, Lobes::Counted, sampler, counters);
     add(depth, Term::DirectReflection, direct.reflected);
     add(depth, Term::DirectTransmission, direct.transmitted);
+    add_class(LightClass::LDE, direct.reflected + direct.transmitted - direct.lobe);
+    if (view.options.classes)
+      out.light_class[static_cast<std::size_t>(LightClass::LSE)] += beta * direct.lobe;
     if (depth == 0) {
       out.position = hit->position;
       out.body_albedo = surface.bsdf.diffuse_reflectance(wo);
@@ -317,12 +351,17 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
       const FieldRadiance<N> r = field_radiance(view, surface, wo, {false, true, !gathers});
       add(depth, Term::IndirectReflection, r.reflected);
       add(depth, Term::IndirectTransmission, r.transmitted);
+      add_class(LightClass::LSDE, r.reflected + r.transmitted);
       // What the field knows needs no sharing: what samples find beside it has less shape.
       if (depth == 0 && gathers && view.options.share_samples)
         out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
       const auto take = [&](const Gathered<N>& g) {
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);
+        add_class(LightClass::LDE, g.straight);
+        add_class(LightClass::LDDE, g.once);
+        add_class(LightClass::LSDDE, g.caustic);
+        add_class(LightClass::LDDDE, g.indirect - g.once - g.caustic);
         if (depth == 0 && g.reflected) {
           out.body_direct += g.straight;
           out.body_indirect += g.indirect;

@@ -1,3 +1,4 @@
+#include "attribution.h"
 #include "integrator.h"
 
 namespace atrium::trace {
@@ -8,35 +9,6 @@ using namespace material;
 namespace {
 
 constexpr int kRouletteDepth = 6;
-
-// Which terms the light of a longer path goes to: fixed by what the first surface did.
-template <int N>
-struct Attribution {
-  bool decided = false;
-  Event event = kDiffuseReflection;
-  Spectrum<N> body_share = Spectrum<N>::one();  // of a direction that body and lobe share
-
-  void add(PixelSample<N>& out, const Spectrum<N>& radiance, bool straight) const {
-    if (!decided) {
-      out[Term::Emission] += radiance;
-      return;
-    }
-    if (straight || (event & (kDiffuseEvents | kLobeEvents)) == 0) {
-      out[term_of(event, straight)] += radiance;
-      return;
-    }
-    const bool reflected = (event & (kDiffuseReflection | kLobeReflection)) != 0;
-    const Spectrum<N> body = radiance * body_share;
-    out[reflected ? Term::IndirectReflection : Term::IndirectTransmission] += body;
-    out[reflected ? Term::SpecularReflection : Term::SpecularTransmission] += radiance - body;
-  }
-};
-
-template <int N>
-Spectrum<N> share_of_body(const BsdfValue<N>& f) {
-  const Spectrum<N> sum = f.sum();
-  return Spectrum<N>::generate([&](int i) { return sum[i] > 0.0f ? f.diffuse[i] / sum[i] : 1.0f; });
-}
 
 template <int N>
 void sample_light(const View<N>& view, const scene::Interaction<N>& surface, const Vec3f& wo,
@@ -55,10 +27,7 @@ void sample_light(const View<N>& view, const scene::Interaction<N>& surface, con
   if (contribution.is_zero()) return;
   contribution *= view.shading.visibility(surface.point, *light, counters, Counter::RaysShadow);
   if (!light->dirac) contribution *= mis_weight(light->pdf, surface.bsdf.pdf(wo, wi));
-  if (attribution.decided)
-    attribution.add(out, contribution, false);
-  else
-    out[wi.z() > 0.0f ? Term::DirectReflection : Term::DirectTransmission] += contribution;
+  attribution.add_direct(out, f, wi.z() > 0.0f, contribution);
 }
 
 }  // namespace
@@ -68,7 +37,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
                           scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   PixelSample<N> out;
-  Attribution<N> attribution;
+  Attribution<N> attribution(view.options.classes);
   ScatterVertex vertex;
   Spectrum<N> beta = Spectrum<N>::one();
   scene::Ray ray = camera_ray;
@@ -108,11 +77,10 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
     const Vec3f wi = surface.to_world(s->wi);
     if ((s->wi.z() > 0.0f) != (wi.dot(surface.ng) > 0.0f))
       break;  // shading normal against the surface
-    if (!attribution.decided) {
-      attribution.decided = true;
-      attribution.event = s->event;
-      if (!s->dirac()) attribution.body_share = share_of_body(surface.bsdf.eval(wo, s->wi));
-    }
+    if (s->dirac())
+      attribution.pass(s->event);
+    else if (attribution.open())
+      attribution.scatter(s->event, surface.bsdf.eval(wo, s->wi));
     beta *= s->weight;
     if ((s->event & (kRefraction | kLobeTransmission)) != 0)
       eta_scale *= surface.bsdf.eta() * surface.bsdf.eta();

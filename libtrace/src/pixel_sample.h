@@ -6,6 +6,7 @@
 #include "material/bsdf.h"
 #include "material/frame.h"
 #include "material/spectrum.h"
+#include "trace/light_classes.h"
 
 namespace atrium::trace {
 
@@ -25,6 +26,7 @@ inline constexpr std::size_t kTerms = 7;
 template <int N>
 struct PixelSample {
   std::array<Spectrum<N>, kTerms> term{};
+  std::array<Spectrum<N>, kLightClasses> light_class{};  ///< if RenderOptions::classes
   Spectrum<N> albedo;
   Spectrum<N> irradiance;
   Vec3f normal = Vec3f::Zero();

@@ -44,11 +44,17 @@ std::string remark_of(const Errors& e, const RenderOptions& o) {
 class Rounds {
  public:
   Rounds(Film& film, int width, int height, const RenderOptions& options, const Pass& pass,
-         const std::vector<float>& cost, RenderResult& result)
-      : film_(film), options_(options), pass_(pass), cost_(cost), result_(result) {
+         const std::vector<float>& cost, RoundState& state, RenderResult& result)
+      : film_(film),
+        options_(options),
+        pass_(pass),
+        cost_(cost),
+        state_(state),
+        samples_(state.samples),
+        result_(result) {
     plan_.width = width;
     plan_.height = height;
-    samples_.assign(cost.size(), 0);
+    samples_.resize(cost.size(), 0);
   }
 
   /// Passes of doubling size: a picture of the whole view early, few synchronisations later.
@@ -66,7 +72,8 @@ class Rounds {
 
   void until_error() {
     const auto most = static_cast<std::uint32_t>(options_.samples);
-    if (!uniform(std::min(kFirst, most), 0.02)) return;
+    if (state_.rounds == 0 && !uniform(std::min(kFirst, most), 0.02)) return;
+    if (state_.rounds > 0 && !pass_(samples_, {0.0, 1.0, {}})) return;  // what was in progress
     for (Errors now = develop();; now = develop()) {
       const double e = excess(now, options_);
       if (!(e > 1.0)) {
@@ -78,7 +85,7 @@ class Rounds {
         result_.stopped_by = "samples";
         return;
       }
-      ++result_.rounds;
+      ++state_.rounds;
       if (!pass_(samples_, {done, std::min(1.0, kGrowth * done), remark_of(now, options_)})) return;
     }
   }
@@ -86,6 +93,7 @@ class Rounds {
   void finish() {
     const PictureSamples samples = film_.develop();
     const Errors e = estimate(samples);
+    result_.rounds = state_.rounds;
     result_.error_estimate = e.pixel.value;
     result_.bias_estimate = e.pixel.bias;
     result_.block_error_estimate = e.block.value;
@@ -117,16 +125,17 @@ class Rounds {
   const RenderOptions& options_;
   const Pass& pass_;
   const std::vector<float>& cost_;
+  RoundState& state_;
+  std::vector<std::uint32_t>& samples_;
   RenderResult& result_;
   PixelCosts plan_;
-  std::vector<std::uint32_t> samples_;
 };
 
 }  // namespace
 
 void take_samples(Film& film, int width, int height, const RenderOptions& options, const Pass& pass,
-                  const std::vector<float>& cost, RenderResult& result) {
-  Rounds rounds(film, width, height, options, pass, cost, result);
+                  const std::vector<float>& cost, RoundState& state, RenderResult& result) {
+  Rounds rounds(film, width, height, options, pass, cost, state, result);
   if (options.error > 0.0 || options.block_error > 0.0)
     rounds.until_error();
   else

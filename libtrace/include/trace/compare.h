@@ -22,6 +22,16 @@ struct TermComparison {
   double difference = 0.0;  ///< image minus reference
 };
 
+/// One class of light paths (trace/light_classes.h) of both images, as shares of the reference's
+/// whole mean luminance.
+struct ClassComparison {
+  std::string name;
+  double share = 0.0;       ///< of the class in the reference
+  double difference = 0.0;  ///< image minus reference
+  double interval = 0.0;    ///< half width of its 95 % confidence interval, from both stderr layers
+  double rms = 0.0;  ///< of the pixels' luminance, the noise of both subtracted in quadrature
+};
+
 /// How far an image I is from a reference R.
 ///
 /// Per pixel and channel e = (I - R) / (Y5(R) + 0.05 * median of Y(R) over lit pixels), where Y5 is
@@ -38,9 +48,10 @@ struct Comparison {
   bool noise_known = false;
   double pixel_noise = 0.0;  ///< RMS of the reference's standard error, same units
   double block_noise = 0.0;
-  std::vector<TermComparison> terms;  ///< of layers that both images have
-  std::size_t pixels = 0;          ///< compared
-  std::size_t pixels_skipped = 0;  ///< not finite in one of the images
+  std::vector<TermComparison> terms;     ///< of layers that both images have
+  std::vector<ClassComparison> classes;  ///< the same
+  std::size_t pixels = 0;                ///< compared
+  std::size_t pixels_skipped = 0;        ///< not finite in one of the images
 };
 
 /// \throws std::invalid_argument  if sizes differ or R, G, B are missing.

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "material/spectral_basis.h"
 #include "scene/camera.h"
@@ -30,10 +32,18 @@ enum class Indirect {
   Gather  ///< hemisphere rays that read the field where they end
 };
 
+/// What kinds of paths Method::Path joins.
+enum class PathKind {
+  Needed,   ///< as choose_strategy() has it
+  FromEye,  ///< from the eye alone: lights are hit or sampled
+  BothEnds  ///< from the eye and from lights
+};
+
 struct RenderOptions {
   Method method = Method::Hybrid;
   Mode mode = Mode::Radiometric;
   Indirect indirect = Indirect::Gather;
+  PathKind paths = PathKind::Needed;
   int width = 640;
   int height = 480;
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1 as shares of the image
@@ -49,26 +59,37 @@ struct RenderOptions {
   /// in Method::Path or paper mode).
   bool share_samples = true;
   bool components = false;  ///< layers C1..C6 and emission
+  bool classes = false;     ///< layers by class of light paths (trace/light_classes.h)
+  /// Takes what a later rendering needs to go on as if there had been no end: about once a minute
+  /// and at the end. Method::Path only.
+  std::function<void(const std::vector<char>& state)> save_state;
+  /// State to go on from, of the same scene, basis, camera and options (samples, errors and time
+  /// limit apart); null: from the beginning. Method::Path only.
+  const std::vector<char>* state = nullptr;
 };
 
 struct RenderResult {
   /// Linear. Always R,G,B, albedo.*, normal.*, depth.Z, irradiance.*, samples.N (of the pixel),
   /// stderr.* (RMS error, also by sharing between pixels, smoothed over 5x5 pixels; 0 below 4
-  /// samples); with components C1.R ... C6.B and emission.*, whose sum is R,G,B.
+  /// samples); with components C1.R ... C6.B and emission.*, whose sum is R,G,B; with classes
+  /// LE.R ... LDDDSE.B, whose sum is R,G,B, and stderr.LE.Y ... of their luminance, unsmoothed.
   scene::Image image;
   scene::Counters counters;
-  int samples_done = 0;        ///< per pixel, smallest
-  double samples_mean = 0.0;   ///< per pixel
-  int rounds = 0;              ///< after the first samples of every pixel, towards an error
+  int samples_done = 0;               ///< per pixel, smallest
+  double samples_mean = 0.0;          ///< per pixel
+  int rounds = 0;                     ///< after the first samples of every pixel, towards an error
   double error_estimate = 0.0;        ///< RMS of the relative error per pixel (trace/compare.h)
   double bias_estimate = 0.0;         ///< its part that sharing between pixels causes
   double block_error_estimate = 0.0;  ///< after averaging 8x8 pixels
-  std::string stopped_by;  ///< "error" (reached), "samples", "time limit", "interrupt"
-  bool complete = true;    ///< false: stopped by time or request
+  std::string stopped_by;             ///< "error" (reached), "samples", "time limit", "interrupt"
+  bool complete = true;               ///< false: stopped by time or request
 };
 
 /// Renders one view. Deterministic for a scene, options and seed at any thread count (time limits
 /// and interrupts apart).
+/// \throws Error  for a state that does not fit.
+/// \throws std::invalid_argument  also for classes that cannot be told apart: Indirect::Mesh with a
+/// field, paper mode.
 /// \param field  may be empty: then there is no diffuse inter-reflection. Method::Hybrid only.
 [[nodiscard]] RenderResult render(const scene::RayQuery& query,
                                   const material::SpectralBasis& basis, const scene::Camera& camera,

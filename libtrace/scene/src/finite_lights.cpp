@@ -323,21 +323,49 @@ Spectrum<N> FiniteLights<N>::emitted(const SurfacePoint& point, const Vec3f& wo)
 template <int N>
 EmissionSample<N> FiniteLights<N>::sample_emission(std::size_t light, const Vec2f& u_position,
                                                    const Vec2f& u_direction) const {
-  return light < positional_.size()
-             ? emission_of(positional_[light], u_direction)
-             : emission_of(triangles_[light - positional_.size()], u_position, u_direction);
+  EmissionSample<N> s =
+      light < positional_.size()
+          ? emission_of(positional_[light], u_direction)
+          : emission_of(triangles_[light - positional_.size()], u_position, u_direction);
+  s.number = static_cast<std::uint32_t>(light);
+  return s;
+}
+
+template <int N>
+float FiniteLights<N>::emission_density(std::size_t light, const Vec3f& direction) const {
+  if (light >= positional_.size()) {
+    const EmissiveTriangle& t = triangles_[light - positional_.size()];
+    return t.area > 0.0f ? 1.0f / (kPi * t.area * (two_sided(t) ? 2.0f : 1.0f)) : 0.0f;
+  }
+  const float cos_max = cone_of(positional_[light]);
+  const float cosine = -positional_[light].to_local.row(2).dot(direction);
+  return cosine >= cos_max ? 1.0f / (2.0f * kPi * (1.0f - cos_max)) : 0.0f;
+}
+
+template <int N>
+std::optional<std::size_t> FiniteLights<N>::number_of(const SurfacePoint& point) const {
+  const std::uint32_t first = first_triangle_of_object_[point.object.value];
+  if (first == kNone) return std::nullopt;
+  return positional_.size() + first + point.triangle;
+}
+
+// Cosine of the half angle of the cone around its axis that a light shines into.
+template <int N>
+float FiniteLights<N>::cone_of(const Positional& light) const {
+  const auto* spot = std::get_if<SpotLight>(&scene_->lights[light.index].kind);
+  return spot != nullptr ? std::cos(spot->outer_angle) : -1.0f;
 }
 
 template <int N>
 EmissionSample<N> FiniteLights<N>::emission_of(const Positional& light, const Vec2f& u) const {
-  const auto* spot = std::get_if<SpotLight>(&scene_->lights[light.index].kind);
-  const float cos_max = spot != nullptr ? std::cos(spot->outer_angle) : -1.0f;
+  const float cos_max = cone_of(light);
   const Vec3f local = uniform_cone(u, cos_max);  // around +z; the light looks along -z
   EmissionSample<N> s;
   s.origin = light.position;
   s.direction = light.to_local.transpose() * Vec3f(local.x(), local.y(), -local.z());
   s.weight = intensity_towards(light, s.direction) * (2.0f * kPi * (1.0f - cos_max));
   s.source = light.index;
+  s.dirac = true;
   return s;
 }
 
@@ -357,6 +385,7 @@ EmissionSample<N> FiniteLights<N>::emission_of(const EmissiveTriangle& t, const 
   s.origin = offset_origin(q, s.direction);
   s.weight = radiance_at(q) * (kPi * t.area * (two_sided(t) ? 2.0f : 1.0f));
   s.source = light_source(*scene_, t.object);
+  s.surface = q;
   return s;
 }
 

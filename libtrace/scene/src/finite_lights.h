@@ -41,6 +41,12 @@ class FiniteLights {
   [[nodiscard]] std::vector<Spectrum<N>> fluxes() const;
   [[nodiscard]] EmissionSample<N> sample_emission(std::size_t light, const Vec2f& u_position,
                                                   const Vec2f& u_direction) const;
+  /// Density of that: of lights without extent [1/sr] in a direction, of triangles
+  /// [1/(m^2 sr)] by projected solid angle.
+  [[nodiscard]] float emission_density(std::size_t light, const Vec3f& direction) const;
+  [[nodiscard]] bool is_positional(std::size_t light) const { return light < positional_.size(); }
+  /// Number of the triangle of an emissive surface; nullopt: of another.
+  [[nodiscard]] std::optional<std::size_t> number_of(const SurfacePoint& point) const;
 
  private:
   struct Positional {  // point, spot, profile
@@ -71,6 +77,7 @@ class FiniteLights {
                                       const Vec3f& wi) const;
   [[nodiscard]] std::optional<Place> place_on(const EmissiveTriangle& t, const Vec3f& p,
                                               const Vec2f& u) const;
+  [[nodiscard]] float cone_of(const Positional& light) const;
   [[nodiscard]] EmissionSample<N> emission_of(const Positional& light, const Vec2f& u) const;
   [[nodiscard]] EmissionSample<N> emission_of(const EmissiveTriangle& t, const Vec2f& u_position,
                                               const Vec2f& u_direction) const;

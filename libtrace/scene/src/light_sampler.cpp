@@ -102,12 +102,32 @@ struct LightSampler<N>::Impl {
     s.source = source;
     return s;
   }
+  /// Probability that sample_emission() chooses this light.
+  float share_of(std::size_t i) const {
+    const double total = flux_cdf.back();
+    return total > 0.0 ? static_cast<float>((flux_cdf[i + 1] - flux_cdf[i]) / total) : 0.0f;
+  }
+  /// [1/m^2] on the disc that rays from far away start on.
+  float arrival_density() const { return 1.0f / (kPi * radius * radius); }
+  std::optional<std::size_t> sun_of(std::uint32_t light) const {
+    for (std::size_t i = 0; i < sky.points().size(); ++i)
+      if (sky.points()[i].light == light) return i;
+    return std::nullopt;
+  }
+  /// Probability that sample() chooses a sun without a size.
+  float choice_of_sun(std::size_t i, const Vec3f& p, const Vec3f& normal) const {
+    const float sum = groups(p, normal).sum();
+    return sum > 0.0f ? sky.share(sky.points()[i], p, normal) / sum : 0.0f;
+  }
   /// \param i  counts suns without a size, discs, then the environment.
   EmissionSample<N> sky_emission(std::size_t i, const Vec2f& u_position,
                                  const Vec2f& u_direction) const {
-    if (i < sky.points().size())
-      return arriving(sky.points()[i].direction, sky.points()[i].irradiance, sky.points()[i].light,
-                      u_position);
+    if (i < sky.points().size()) {
+      EmissionSample<N> s = arriving(sky.points()[i].direction, sky.points()[i].irradiance,
+                                     sky.points()[i].light, u_position);
+      s.dirac = true;
+      return s;
+    }
     i -= sky.points().size();
     if (i < sky.discs().size())
       return arriving(Sky::disc_direction(sky.discs()[i], u_direction), sky.discs()[i].irradiance,
@@ -259,13 +279,60 @@ std::optional<EmissionSample<N>> LightSampler<N>::sample_emission(float u_choice
   const auto it = std::upper_bound(m.flux_cdf.begin(), m.flux_cdf.end(), x);
   const std::size_t i =
       std::min(static_cast<std::size_t>(it - m.flux_cdf.begin()), m.flux_of.size()) - 1;
-  const auto probability = static_cast<float>((m.flux_cdf[i + 1] - m.flux_cdf[i]) / total);
+  const float probability = m.share_of(i);
   if (!(probability > 0.0f)) return std::nullopt;
   EmissionSample<N> s = i < m.finite_count
                             ? m.finite.sample_emission(i, u_position, u_direction)
                             : m.sky_emission(i - m.finite_count, u_position, u_direction);
   s.weight /= probability;
   return s;
+}
+
+template <int N>
+float LightSampler<N>::pdf(const Vec3f& p, const Vec3f& normal, const EmissionSample<N>& start,
+                           float distance) const {
+  const Impl& m = *impl_;
+  if (start.number != LightSample<N>::kFarAway)
+    return start.dirac ? choice_probability(p, normal, start.number)
+                       : pdf(p, normal, start.surface, distance);
+  if (!start.dirac) return pdf_environment(p, normal, -start.direction);
+  const auto sun = m.sun_of(start.source);
+  return sun ? m.choice_of_sun(*sun, p, normal) : 0.0f;
+}
+
+template <int N>
+float LightSampler<N>::emission_density(const LightSample<N>& light) const {
+  const Impl& m = *impl_;
+  if (light.number == LightSample<N>::kFarAway) {
+    if (!light.dirac) return emission_density(light.wi);
+    const auto sun = m.sun_of(light.source);
+    return sun ? m.share_of(m.finite_count + *sun) * m.arrival_density() : 0.0f;
+  }
+  const float density =
+      m.share_of(light.number) * m.finite.emission_density(light.number, -light.wi);
+  return m.finite.is_positional(light.number) ? density / (light.distance * light.distance)
+                                              : density;
+}
+
+template <int N>
+float LightSampler<N>::emission_density(const SurfacePoint& hit) const {
+  const auto number = impl_->finite.number_of(hit);
+  return number ? impl_->share_of(*number) * impl_->finite.emission_density(*number, Vec3f::Zero())
+                : 0.0f;
+}
+
+template <int N>
+float LightSampler<N>::emission_density(const Vec3f& direction) const {
+  const Impl& m = *impl_;
+  std::size_t i = m.finite_count + m.sky.points().size();
+  float sum = 0.0f;
+  for (const auto& disc : m.sky.discs()) {
+    if (Impl::Sky::covers(disc, direction)) sum += m.share_of(i) / (kPi * disc.chord2);
+    ++i;
+  }
+  if (m.sky.environment().present())
+    sum += m.share_of(i) * m.sky.environment().pdf(Vec3f::Zero(), direction);
+  return sum * m.arrival_density();
 }
 
 template <int N>

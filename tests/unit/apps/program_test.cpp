@@ -81,6 +81,12 @@ TEST(AtriumProgram, ContradictionsAreErrorsThatNameTheOption) {
                "--indirect");
   expect_error(run(folder, "render a.obj -o a.exr --exposure 3"), 2, "--exposure");
   expect_error(run(folder, "render a.obj -o a.png --components"), 2, "--components");
+  expect_error(run(folder, "render a.obj -o a.png --classes"), 2, "--classes");
+  expect_error(run(folder, "render a.obj -o a.exr --classes --indirect mesh"), 2, "--classes");
+  expect_error(run(folder, "render a.obj -o a.exr --classes --mode paper"), 2, "--classes");
+  expect_error(run(folder, "render a.obj -o a.exr --checkpoint c"), 2, "--checkpoint");
+  expect_error(run(folder, path + "--checkpoint c --camera all"), 2, "--checkpoint");
+  expect_error(run(folder, path + "--checkpoint a.exr"), 2, "twice");
   expect_error(run(folder, "render a.obj -o a.exr --solution x.atrium --solver rows"), 2,
                "--solver");
   expect_error(run(folder, "render a.obj -o a.exr -o ./a.exr"), 2, "twice");
@@ -161,6 +167,20 @@ class AtriumRun : public ::testing::Test {
   }
   TempFolder folder;
 };
+
+// A reference picture goes on from its checkpoint to the bits of one that was made at once; of
+// another picture or damaged it is refused, and nothing is written.
+TEST_F(AtriumRun, ReferenceGoesOnFromACheckpoint) {
+  const std::string make = "render a.obj --method path --size 32x24 --quiet ";
+  ASSERT_EQ(run(folder, make + "-o whole.pfm --samples 8").code, 0);
+  ASSERT_EQ(run(folder, make + "-o part.pfm --samples 2 --checkpoint c").code, 0);
+  ASSERT_EQ(run(folder, make + "-o part.pfm --samples 8 --checkpoint c").code, 0);
+  EXPECT_EQ(read_file(folder / "part.pfm"), read_file(folder / "whole.pfm"));
+  expect_error(run(folder, make + "-o no.pfm --samples 8 --checkpoint c --seed 2"), 2, "seed");
+  folder.write("c", read_file(folder / "c").substr(0, 1000));
+  expect_error(run(folder, make + "-o no.pfm --samples 8 --checkpoint c"), 2, "c: ");
+  EXPECT_FALSE(std::filesystem::exists(folder / "no.pfm"));
+}
 
 TEST_F(AtriumRun, RenderWritesImageAndStatistics) {
   const Result r = run(folder,

@@ -119,6 +119,42 @@ TEST(Compare, ABlackReferenceIsNoDivisionByZeroUnlessTheImageIsLit) {
   EXPECT_TRUE(std::isinf(compare(flat(8, 8, 1.0f), flat(8, 8, 0.0f)).pixel.value));
 }
 
+// Classes of light paths: the class has 0.5 of 2.0 in the reference and 0.6 in the image, noise 0.3
+// and 0.4 in each of 384 pixels: share 0.25, difference 0.05, half width 1.96 sqrt(0.25 / 384) / 2.
+// Half the pixels of another one are 1 brighter, half 1 darker: RMS sqrt(1 - 0.25) / 2.
+TEST(Compare, ClassesHaveDifferencesWithIntervals) {
+  Image image = flat(24, 16, 2.0f), reference = flat(24, 16, 2.0f);
+  const auto add = [](Image& i, const std::string& name, float value, float noise, float swing) {
+    Image wide = i;
+    for (const char* c : {".R", ".G", ".B"}) wide.channels.push_back(name + c);
+    wide.channels.push_back("stderr." + name + ".Y");
+    wide.pixels.clear();
+    const std::size_t stride = i.channels.size();
+    for (std::size_t p = 0; p < i.pixel_count(); ++p) {
+      wide.pixels.insert(wide.pixels.end(),
+                         i.pixels.begin() + static_cast<std::ptrdiff_t>(p * stride),
+                         i.pixels.begin() + static_cast<std::ptrdiff_t>((p + 1) * stride));
+      const float v = value + (p % 2 == 0 ? swing : -swing);
+      wide.pixels.insert(wide.pixels.end(), {v, v, v, noise});
+    }
+    i = wide;
+  };
+  add(image, "LDE", 0.6f, 0.3f, 0.0f);
+  add(reference, "LDE", 0.5f, 0.4f, 0.0f);
+  add(image, "LSDE", 1.4f, 0.3f, 1.0f);
+  add(reference, "LSDE", 1.4f, 0.4f, 0.0f);
+  const Comparison c = compare(image, reference);
+  ASSERT_EQ(c.classes.size(), 2u);
+  EXPECT_EQ(c.classes[0].name, "LDE");
+  EXPECT_NEAR(c.classes[0].share, 0.25, 1e-6);
+  EXPECT_NEAR(c.classes[0].difference, 0.05, 1e-6);
+  EXPECT_NEAR(c.classes[0].interval, 1.959964 * std::sqrt(0.25 / 384.0) / 2.0, 1e-6);
+  EXPECT_EQ(c.classes[0].rms, 0.0);
+  EXPECT_EQ(c.classes[1].name, "LSDE");
+  EXPECT_NEAR(c.classes[1].difference, 0.0, 1e-6);
+  EXPECT_NEAR(c.classes[1].rms, std::sqrt(0.75) / 2.0, 1e-6);
+}
+
 TEST(Compare, DifferentSizesOrMissingChannelsAreRefused) {
   EXPECT_THROW((void)compare(flat(8, 8, 1.0f), flat(8, 9, 1.0f)), std::invalid_argument);
   Image grey = flat(8, 8, 1.0f);

@@ -45,6 +45,9 @@ struct EmissionSample {
   Vec3f direction;
   Spectrum<N> weight;        ///< flux carried by this sample: Phi estimate for one sample
   std::uint32_t source = 0;  ///< number of light_groups.h
+  std::uint32_t number = LightSample<N>::kFarAway;  ///< of LightSampler::sample_light()
+  bool dirac = false;                               ///< of a light without extent: no ray finds it
+  SurfacePoint surface;                             ///< where it starts, on emissive surfaces
 };
 
 /// Chooses lights for next event estimation and photons: a bounding hierarchy over all lights and
@@ -105,6 +108,19 @@ class LightSampler {
   [[nodiscard]] std::optional<EmissionSample<N>> sample_emission(float u_choice,
                                                                  const Vec2f& u_position,
                                                                  const Vec2f& u_direction) const;
+  /// Density with which sample() at p finds the light that this ray came from, as LightSample::pdf.
+  /// \param distance  from the start to p.
+  [[nodiscard]] float pdf(const Vec3f& p, const Vec3f& normal, const EmissionSample<N>& start,
+                          float distance) const;
+  /// Density [1/m^2] of the rays of sample_emission() that arrive at a point, by area that faces
+  /// them, if nothing is in their way; times [1/sr] of the lamp's projected solid angle where it
+  /// has one. Divided by LightSample::pdf it is the same for all kinds of lights: how often rays
+  /// from lights arrive for one time that sample() chooses the light.
+  [[nodiscard]] float emission_density(const LightSample<N>& light) const;
+  /// The same of an emissive point that a ray hit; 0: emits nothing.
+  [[nodiscard]] float emission_density(const SurfacePoint& hit) const;
+  /// The same of environment and discs together, in a direction towards them.
+  [[nodiscard]] float emission_density(const Vec3f& direction) const;
   /// Total emitted flux by lane (environment: what enters the scene's bounding sphere).
   [[nodiscard]] Spectrum<N> flux() const;
 
