@@ -47,10 +47,10 @@ struct SolveSettings {
   double time_limit = 0.0;    ///< [s] for everything but writing; 0: none
   double memory_limit = 0.0;  ///< [MB, 1e6 bytes] for scene and radiosity; 0: none
   std::uint64_t seed = 1;
-  double error = 0.0;          ///< RMS of irradiance asked for; 0: the effort of the quality
+  double error = 0.0;              ///< RMS of irradiance asked for; 0: the effort of the quality
   std::uint32_t max_elements = 0;  ///< 0: as the quality
-  int probes = 0;              ///< points of the certificate
-  bool paper_weights = false;  ///< --mode paper
+  int probes = 0;                  ///< points of the certificate
+  bool paper_weights = false;      ///< --mode paper
   scene::Grouping light_groups = scene::Grouping::One;
   bool keep_state = false;         ///< a solution is written, from which a later run may go on
   bool keep_rows = false;          ///< with the rows
@@ -76,6 +76,12 @@ struct RenderCommand {
   trace::ToneMapOptions tone;
   std::string solution;  ///< read
   std::string save_solution;
+  // A walk: many views along a path.
+  std::string path;         ///< file; empty: no walk
+  int frames = 0;           ///< 0: as fps says
+  double fps = 0.0;         ///< [1/s], for a path with times; 0: as frames says
+  std::string frame_range;  ///< A-B, from 1; empty: all
+  std::string preview;      ///< picture so far, rewritten; empty: none
 };
 
 /// How files for other programs are written.

@@ -21,47 +21,76 @@ struct Parts {
   bool direct, caustic, indirect;
 };
 
-template <int N>
-Spectrum<N> stored(const SurfaceField& field, const SurfaceField::Quantities& q,
-                   const SurfaceField::Stencil& s, Side side, Parts parts) {
-  Spectrum<N> e;
-  if (parts.direct) e += field.interpolate<N>(q.direct, s, side);
-  if (parts.caustic) e += field.interpolate<N>(q.caustic, s, side);
-  if (parts.indirect) e += field.interpolate<N>(q.indirect, s, side);
-  return e;
-}
-
-/// Edge of the element at a point [m]; 0 where there is none.
-float element_size(const SurfaceField& field, const scene::Scene& scene,
-                   const scene::SurfacePoint& p) {
-  const std::uint32_t e = field.element_at(scene, p.object, p.triangle, p.position);
-  return e == SurfaceField::kNone ? 0.0f : field.element_size(e);
-}
-
 /// Radiance towards the viewer that the field gives at a point, by reflection and by transmission
 /// of what arrives on the other side.
 template <int N>
 struct FieldRadiance {
   Spectrum<N> reflected, transmitted;
 };
+
+/// What the field knows at a point of a surface: looked for once, summed as often as needed.
 template <int N>
-FieldRadiance<N> field_radiance(const View<N>& view, const scene::Interaction<N>& surface,
-                                const Vec3f& wo, Parts parts) {
-  FieldRadiance<N> r;
-  if (view.field.empty() || !surface.bsdf.has(kDiffuseEvents)) return r;
-  const scene::SurfacePoint& p = surface.point;
-  const auto irradiance = [&](Side side, const SurfaceField::Quantities& q) {
-    const auto s = view.field.stencil(view.shading.scene(), p.object, p.triangle, p.position, side);
-    return stored<N>(view.field, q, s, side, parts);
-  };
-  if (surface.bsdf.has(kDiffuseReflection)) {
-    const auto& q = surface.bsdf.coupled() ? view.field.body_irradiance : view.field.irradiance;
-    r.reflected = surface.bsdf.diffuse_reflectance(wo) * irradiance(surface.side, q) * kInvPi;
+class FieldPoint {
+ public:
+  /// The field must not be empty.
+  FieldPoint(const View<N>& view, const scene::Interaction<N>& surface)
+      : FieldPoint(view, surface,
+                   view.field.spot(view.shading.scene(), surface.point.object,
+                                   surface.point.triangle, surface.point.position)) {}
+  FieldPoint(const View<N>& view, const scene::Interaction<N>& surface,
+             const SurfaceField::Spot& spot)
+      : view_(view),
+        surface_(surface),
+        spot_(spot),
+        here_(view.field.stencil(spot, surface.side)) {}
+
+  /// Of everything on the viewer's side.
+  [[nodiscard]] Spectrum<N> irradiance() const {
+    return view_.field.template interpolate<N>(view_.arriving, here_, surface_.side);
   }
-  if (surface.bsdf.has(kDiffuseTransmission))
-    r.transmitted = surface.bsdf.diffuse_transmittance() *
-                    irradiance(other(surface.side), view.field.irradiance) * kInvPi;
-  return r;
+  [[nodiscard]] Spectrum<N> reflected(const Vec3f& wo, Parts parts) const {
+    if (!surface_.bsdf.has(kDiffuseReflection)) return {};
+    const auto& q = surface_.bsdf.coupled() ? view_.field.body_irradiance : view_.field.irradiance;
+    return surface_.bsdf.diffuse_reflectance(wo) * sum(q, here_, surface_.side, parts) * kInvPi;
+  }
+  [[nodiscard]] Spectrum<N> transmitted(Parts parts) const {
+    if (!surface_.bsdf.has(kDiffuseTransmission)) return {};
+    const Side side = other(surface_.side);
+    return surface_.bsdf.diffuse_transmittance() *
+           sum(view_.field.irradiance, view_.field.stencil(spot_, side), side, parts) * kInvPi;
+  }
+  [[nodiscard]] FieldRadiance<N> radiance(const Vec3f& wo, Parts parts) const {
+    return {reflected(wo, parts), transmitted(parts)};
+  }
+
+ private:
+  Spectrum<N> sum(const SurfaceField::Quantities& q, const SurfaceField::Stencil& s, Side side,
+                  Parts parts) const {
+    Spectrum<N> e;
+    if (parts.direct) e += view_.field.template interpolate<N>(q.direct, s, side);
+    if (parts.caustic) e += view_.field.template interpolate<N>(q.caustic, s, side);
+    if (parts.indirect) e += view_.field.template interpolate<N>(q.indirect, s, side);
+    return e;
+  }
+
+  const View<N>& view_;
+  const scene::Interaction<N>& surface_;
+  SurfaceField::Spot spot_;
+  SurfaceField::Stencil here_;
+};
+
+/// Irradiance at the end of a ray [as the field]. From afar one ray of many sees an element as a
+/// whole, whose own value is its mean; close by it is interpolated.
+template <int N>
+Spectrum<N> irradiance_seen(const View<N>& view, const SurfaceField::Spot& spot, Side side,
+                            float distance) {
+  constexpr float kFar = 4.0f;  // element edges
+  const SurfaceField& field = view.field;
+  if (spot.element == SurfaceField::kNone) return {};
+  const std::size_t i = std::size_t{spot.element} * 2 + static_cast<std::size_t>(side);
+  if (field.valid[i] != 0 && distance > kFar * field.element_size(spot.element))
+    return field.value<N>(view.arriving, spot.element, side);
+  return field.interpolate<N>(view.arriving, field.stencil(spot, side), side);
 }
 
 /// Light sources as seen from a point. Body and lobe have different rivals among the sampled
@@ -106,6 +135,7 @@ template <int N>
 bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth,
                    scene::Ray& ray, Spectrum<N>& beta, ScatterVertex& vertex, Event& event,
                    scene::Sampler& sampler) {
+  if (!surface.bsdf.has(kSpecularEvents)) return false;
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
   const auto s = surface.bsdf.sample(wo, u_choice, u, kSpecularEvents);
@@ -159,22 +189,36 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
             beta * sky_radiance(shading, ray) * environment_weight(shading, vertex, ray.direction);
       break;
     }
+    const auto add_emission = [&] {
+      if (!straight) return;
+      const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
+      if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
+    };
+    const SurfaceField::Spot spot =
+        view.field.spot(shading.scene(), hit->object, hit->triangle, hit->position);
+    // Closer than an element, its mean direct light is too coarse: look at the lights again.
+    const bool near = depth == 0 && spot.element != SurfaceField::kNone &&
+                      distance < view.field.element_size(spot.element);
+    if (!near && shading.is_matte(hit->material)) {  // where most rays end
+      beta *= shading.through_medium(ray, distance);
+      add_emission();
+      const Side side = hit->ng.dot(ray.direction) <= 0.0f ? Side::Front : Side::Back;
+      g.indirect += beta * shading.matte_reflectance(*hit) *
+                    irradiance_seen(view, spot, side, distance) * kInvPi;
+      break;
+    }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
     beta *= segment_transmittance(shading, surface, ray, distance);
-    if (straight) {
-      const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
-      if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
-    }
-    // Closer than an element, its mean direct light is too coarse: look at the lights again.
-    const bool close = depth == 0 && surface.bsdf.has(kDiffuseEvents) &&
-                       distance < element_size(view.field, shading.scene(), *hit);
-    const FieldRadiance<N> r = field_radiance(view, surface, wo, {!close, true, true});
-    g.indirect += beta * (r.reflected + r.transmitted);
-    if (close) {
-      const DirectLight<N> d =
-          direct_light(view, surface, wo, false, Lobes::LeftToCaustics, sampler, counters);
-      g.indirect += beta * (d.reflected + d.transmitted);
+    add_emission();
+    if (surface.bsdf.has(kDiffuseEvents)) {
+      const FieldRadiance<N> r = FieldPoint(view, surface, spot).radiance(wo, {!near, true, true});
+      g.indirect += beta * (r.reflected + r.transmitted);
+      if (near) {
+        const DirectLight<N> d =
+            direct_light(view, surface, wo, false, Lobes::LeftToCaustics, sampler, counters);
+        g.indirect += beta * (d.reflected + d.transmitted);
+      }
     }
     Event event{};
     if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
@@ -226,12 +270,8 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
       out.depth = distance;
       out.normal = surface.frame.z;
       out.albedo = surface.bsdf.albedo(wo, kAllEvents);
-      if (has_field) {
-        const auto s = view.field.stencil(shading.scene(), hit->object, hit->triangle,
-                                          hit->position, surface.side);
-        out.irradiance =
-            stored<N>(view.field, view.field.irradiance, s, surface.side, {true, true, true});
-      }
+      if (has_field && !surface.bsdf.has(kDiffuseEvents))
+        out.irradiance = FieldPoint(view, surface).irradiance();
     }
     const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
     if (!emitted.is_zero()) add_emission(depth, emitted * emission_weight(shading, vertex, *hit));
@@ -246,12 +286,14 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
       out.body_direct = direct.body;
     }
     if (has_field && surface.bsdf.has(kDiffuseEvents)) {
-      const FieldRadiance<N> r = field_radiance(view, surface, wo, {false, true, !gathers});
+      const FieldPoint<N> field(view, surface);
+      if (depth == 0) out.irradiance = field.irradiance();
+      const FieldRadiance<N> r = field.radiance(wo, {false, true, !gathers});
       add(depth, Term::IndirectReflection, r.reflected);
       add(depth, Term::IndirectTransmission, r.transmitted);
       // What the field knows needs no sharing: what samples find beside it has less shape.
       if (depth == 0 && gathers && view.options.share_samples)
-        out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
+        out.body_indirect -= field.reflected(wo, {false, false, true});
       if (gathers) {
         const Gathered<N> g = gather(view, surface, wo, sampler, counters);
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);

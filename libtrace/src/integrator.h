@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "pixel_sample.h"
 #include "scene/camera.h"
 #include "scene/sampler.h"
@@ -14,6 +17,17 @@ struct View {
   const scene::Shading<N>& shading;
   const scene::SurfaceField& field;
   const RenderOptions& options;
+  std::vector<float> arriving = whole(field.irradiance);  ///< direct, caustic and indirect together
+
+ private:
+  static std::vector<float> whole(const scene::SurfaceField::Quantities& q) {
+    std::vector<float> sum = q.direct;
+    for (const std::vector<float>* part : {&q.caustic, &q.indirect}) {
+      sum.resize(std::max(sum.size(), part->size()));
+      for (std::size_t i = 0; i < part->size(); ++i) sum[i] += (*part)[i];
+    }
+    return sum;
+  }
 };
 
 /// Unbiased path tracing with next event estimation and multiple importance sampling.
