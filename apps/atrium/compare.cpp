@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -8,6 +9,7 @@
 #include "scene/image_io.h"
 #include "scene/output_file.h"
 #include "trace/compare.h"
+#include "trace/fireflies.h"
 
 namespace atrium::app {
 
@@ -26,12 +28,13 @@ void print_measure(const char* name, const trace::Measure& m, double noise, bool
   std::printf("\n");
 }
 
-void print_text(const trace::Comparison& r) {
+void print_text(const trace::Comparison& r, std::uint64_t fireflies) {
   print_measure("RMS, pixel", r.pixel, r.pixel_noise, r.noise_known);
   print_measure("RMS, block", r.block, r.block_noise, r.noise_known);
   std::printf("%-12s %+8.3f %%", "bias", 100.0 * r.bias);
   if (r.bias_error > 0.0) std::printf("   standard error %.3f %%", 100.0 * r.bias_error);
   std::printf("\n%-12s %8.3f %%\n", "maximum", 100.0 * r.max_abs);
+  std::printf("%-12s %8llu pixels\n", "fireflies", static_cast<unsigned long long>(fireflies));
   for (const trace::TermComparison& t : r.terms)
     std::printf("%-12s %8.3f %% of the light, difference %+.3f %%\n", t.name.c_str(),
                 100.0 * t.share, 100.0 * t.difference);
@@ -53,7 +56,7 @@ void add_measure(JsonWriter& json, const char* name, const trace::Measure& m, do
   json.end();
 }
 
-void print_json(const trace::Comparison& r) {
+void print_json(const trace::Comparison& r, std::uint64_t fireflies) {
   JsonWriter json;
   json.begin_object();
   add_measure(json, "pixel", r.pixel, r.pixel_noise);
@@ -61,6 +64,7 @@ void print_json(const trace::Comparison& r) {
   json.member("bias", r.bias);
   json.member("bias_standard_error", r.bias_error);
   json.member("max", r.max_abs);
+  json.member("fireflies", fireflies);
   json.begin_object("terms");
   for (const trace::TermComparison& t : r.terms) {
     json.begin_object(t.name.c_str());
@@ -109,7 +113,8 @@ int run_compare(const CompareCommand& c) {
                 std::to_string(reference.width) + "x" + std::to_string(reference.height));
   }
   const trace::Comparison result = trace::compare(image, reference);
-  c.json ? print_json(result) : print_text(result);
+  const std::uint64_t fireflies = trace::count_fireflies(image, reference);
+  c.json ? print_json(result, fireflies) : print_text(result, fireflies);
   if (!c.difference.empty()) {
     const scene::Image difference = trace::difference_image(image, reference);
     scene::write_image(scene::is_display_ending(c.difference)

@@ -78,6 +78,12 @@ struct RenderCommand {
   std::string solution;  ///< read
   std::string save_solution;
   std::string checkpoint;  ///< read if it is there, written
+  // A walk: many views along a path.
+  std::string path;         ///< file; empty: no walk
+  int frames = 0;           ///< 0: as fps says
+  double fps = 0.0;         ///< [1/s], for a path with times; 0: as frames says
+  std::string frame_range;  ///< A-B, from 1; empty: all
+  std::string preview;      ///< picture so far, rewritten; empty: none
 };
 
 /// How files for other programs are written.

@@ -50,7 +50,7 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
   if (o.mode == trace::Mode::Paper) {
     refuse("--indirect", "paper mode reads its ambient light from the mesh");
   }
-  if (!any_output(o, scene::is_display_ending)) {
+  if (!any_output(o, scene::is_display_ending) && !scene::is_display_ending(o.preview)) {
     for (const char* name : {"--exposure", "--tone"}) {
       refuse(name, "only 8-bit images are tone mapped: there is no .png or .jpg output");
     }
@@ -59,6 +59,14 @@ void check_contradictions(const CLI::App& app, const RenderCommand& o) {
                   [](const std::filesystem::path& f) { return scene::file_ending(f) == ".exr"; })) {
     for (const char* name : {"--components", "--classes"})
       refuse(name, "only .exr holds layers: there is no such output");
+  }
+  if (o.path.empty()) {
+    for (const char* name : {"--frames", "--fps", "--frame-range"})
+      refuse(name, "is for walks: there is no --path");
+  } else {
+    refuse("--camera", "--path says where the camera is");
+    if (given("--frames") == given("--fps"))
+      throw Error("--path: say how many pictures by one of --frames and --fps");
   }
   if (!o.solution.empty()) {
     refuse("--save-solution", "there is nothing new to save with --solution");
@@ -76,6 +84,7 @@ class RenderParser : public CommandParser {
                         "FILE")
         ->required();
     add_picture(app);
+    add_walk(app);
     app.add_option("--method", method_,
                    "hybrid (radiosity and ray tracing), path (unbiased reference) or direct (no "
                    "inter-reflection)")
@@ -121,6 +130,19 @@ class RenderParser : public CommandParser {
         ->check(CLI::IsMember({"filmic", "srgb"}))
         ->capture_default_str();
   }
+  void add_walk(CLI::App& app) {
+    app.add_option("--path", o_.path, "key frames of a camera: a numbered picture for every frame")
+        ->type_name("FILE.yaml");
+    app.add_option("--frames", o_.frames, "number of pictures from the path's start to its end")
+        ->check(CLI::Range(1, 1000000));
+    app.add_option("--fps", o_.fps, "pictures per second, for key frames with times")
+        ->check(CLI::Range(1e-3, 1e6));
+    app.add_option("--frame-range", o_.frame_range, "only these of the frames, from 1")
+        ->type_name("A-B");
+    app.add_option("--preview", o_.preview,
+                   "the picture so far, rewritten every two seconds or so while it is rendered")
+        ->type_name("FILE");
+  }
   void add_effort(CLI::App& app) {
     app.add_option(
            "--error", o_.error,
@@ -133,7 +155,8 @@ class RenderParser : public CommandParser {
         ->capture_default_str();
     app.add_option(
            "--samples", o_.samples,
-           "of a pixel; 0: from the quality (16, 64, 256); with an error asked for the most")
+           "of every pixel; 0: from the quality (12, 16, 128 in the mean, more where the error is; "
+           "path: 16, 64, 256 of every pixel); with an error asked for the most")
         ->check(CLI::Range(0, 1 << 24))
         ->capture_default_str();
     app.add_option("--indirect", indirect_,

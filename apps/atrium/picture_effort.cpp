@@ -52,7 +52,8 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
   const double error = pixel_error(c);
   if (!(error > 0.0)) {
     const Effort effort = effort_of(c.solve.quality);
-    plan.samples = c.samples > 0 ? c.samples : effort.samples;
+    plan.spread = c.samples == 0 && c.method != trace::Method::Path;
+    plan.samples = c.samples > 0 ? c.samples : plan.spread ? effort.mean_samples : effort.samples;
     plan.indirect = choice_or(c.indirect, effort.indirect);
     return plan;
   }

@@ -11,7 +11,8 @@ namespace atrium::app {
 
 /// What both passes do for a picture.
 struct PictureEffort {
-  int samples = 0;  ///< of a pixel; with an error asked for the most
+  int samples = 0;      ///< of a pixel; with an error asked for the most
+  bool spread = false;  ///< ... or the mean, more where the error is
   trace::Indirect indirect = trace::Indirect::Gather;
   std::string why;      ///< for people, one line
   std::string caution;  ///< a warning; may be empty

@@ -1,45 +1,46 @@
-#include "trace/packs.h"
-
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <set>
 
 #include "commands.h"
+#include "frame_names.h"
 #include "material/error.h"
 #include "picture_checkpoint.h"
-#include "picture_effort.h"
+#include "picture_pass.h"
 #include "radiosity_pass.h"
 #include "scene/image_io.h"
 #include "scene/output_file.h"
 #include "scene/solution_io.h"
 #include "statistics.h"
+#include "trace/fireflies.h"
 #include "trace/strategy.h"
+#include "view_jobs.h"
+#include "walk.h"
 
 namespace atrium::app {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// One picture to make.
-struct ViewJob {
-  scene::Camera camera;
-  std::string label;  ///< camera's name or number, for messages and file names
-  bool label_files = false;
-};
-
 /// Before hours of work: can everything be written that was asked for?
 void check_outputs(const RenderCommand& c) {
   std::set<fs::path> seen;
-  for (const std::string& file : c.outputs) {
+  const auto check_image = [&](const std::string& file) {
     if (!scene::is_image_ending(file)) {
       throw Error(file + ": unknown image format (known: .exr .hdr .pfm .png .jpg)");
     }
     scene::check_output(file);
     if (!seen.insert(fs::weakly_canonical(fs::absolute(file))).second)
       throw Error(file + ": is given twice");
+  };
+  for (const std::string& output : c.outputs) {
+    if (!c.path.empty()) check_frame_pattern(output);
+    check_image(c.path.empty() ? output : frame_name(output, 1));
   }
+  if (!c.preview.empty()) check_image(c.preview);
   if (!c.save_solution.empty()) {
     if (scene::file_ending(c.save_solution) != ".atrium") {
       throw Error(c.save_solution + ": a solution file ends with .atrium");
@@ -55,52 +56,6 @@ void check_outputs(const RenderCommand& c) {
 }
 
 bool uses_radiosity(const RenderCommand& c) { return c.method == trace::Method::Hybrid; }
-
-std::string view_text(const LoadedScene& loaded, const scene::Camera& camera) {
-  const Vec3d eye = camera.to_scene.translation() + loaded.scene->origin;
-  const Vec3d forward = -camera.to_scene.linear().col(2).normalized();
-  char text[160];
-  std::snprintf(text, sizeof text, "from (%.2f, %.2f, %.2f) m towards (%.2f, %.2f, %.2f)", eye.x(),
-                eye.y(), eye.z(), forward.x(), forward.y(), forward.z());
-  return text;
-}
-
-std::vector<ViewJob> view_jobs(Session& session, const RenderCommand& c,
-                               const LoadedScene& loaded) {
-  std::vector<ViewJob> jobs;
-  if (loaded.views.empty()) {
-    const scene::Camera camera = scene::choose_interior_view(*loaded.scene, *loaded.query);
-    session.progress.note("no camera in the scene: looking " + view_text(loaded, camera));
-    return {{camera, "chosen", false}};
-  }
-  std::set<std::string> used;
-  for (const std::size_t i : loaded.views) {
-    ViewJob job{loaded.scene->cameras[i], loaded.scene->cameras[i].name, c.camera == "all"};
-    if (job.label.empty()) job.label = std::to_string(i);
-    if (!used.insert(job.label).second) job.label += "-" + std::to_string(i);
-    jobs.push_back(job);
-  }
-  if (c.camera.empty() && loaded.scene->cameras.size() > 1) {
-    session.detail("camera: " + jobs[0].label + ", the first of " +
-                   std::to_string(loaded.scene->cameras.size()));
-  }
-  return jobs;
-}
-
-std::array<int, 2> size_for(const RenderCommand& c, const scene::Camera& camera) {
-  if (c.size) return *c.size;
-  constexpr int kWidth = 640;
-  double aspect = camera.aspect > 0.0 ? camera.aspect : 4.0 / 3.0;
-  if (camera.kind == scene::Camera::Kind::Panorama && !(camera.aspect > 0.0)) aspect = 2.0;
-  return {kWidth, static_cast<int>(std::clamp(std::lround(kWidth / aspect), 1L, 65536L))};
-}
-
-/// Seconds that a stage may use: its share of what is left; 0 means no limit was asked for.
-double time_share(const Session& session, const RenderCommand& c, double share) {
-  if (!(c.solve.time_limit > 0.0)) return 0.0;
-  constexpr double kLeast = 1e-3;  // a limit that has passed is still a limit, not "none"
-  return std::max(kLeast, (c.solve.time_limit - session.clock.elapsed()) * share);
-}
 
 scene::SurfaceField load_solution(const RenderCommand& c, const LoadedScene& loaded) {
   scene::Solution solution = scene::read_solution(c.solution);
@@ -151,30 +106,6 @@ void save_solution(Session& session, const RenderCommand& c, const LoadedScene& 
   session.progress.note("wrote " + c.save_solution);
 }
 
-trace::RenderOptions render_options(const Session& session, const RenderCommand& c,
-                                    const PictureEffort& effort, const scene::Camera& camera,
-                                    double time_limit) {
-  trace::RenderOptions o;
-  o.method = c.method;
-  o.mode = c.mode;
-  o.indirect = c.classes ? trace::Indirect::Gather : effort.indirect;
-  // After an interrupt the picture is one cheap sample of what was solved until then.
-  if (session.interrupted() && !c.classes) o.indirect = trace::Indirect::Mesh;
-  const auto [width, height] = size_for(c, camera);
-  o.width = width;
-  o.height = height;
-  o.crop = c.crop;
-  o.samples = effort.samples;
-  o.error = c.error;
-  o.block_error = c.block_error;
-  o.time_limit = time_limit;
-  o.seed = c.solve.seed;
-  o.components = c.components;
-  o.classes = c.classes;
-  o.share_samples = !c.no_filter;
-  return o;
-}
-
 void add_metadata(scene::Image& image, const RenderCommand& c, const LoadedScene& loaded,
                   const trace::RenderResult& result) {
   const bool nits = loaded.scene->unit == scene::RadianceUnit::Nit;
@@ -188,36 +119,6 @@ void add_metadata(scene::Image& image, const RenderCommand& c, const LoadedScene
   image.metadata["atrium:complete"] = result.complete ? "yes" : "no";
 }
 
-/// NAME.exr, or NAME-camera.exr where one image per camera is written.
-std::string file_for(const std::string& output, const ViewJob& job) {
-  if (!job.label_files) return output;
-  std::string label = job.label;
-  for (char& ch : label) {
-    const auto u = static_cast<unsigned char>(ch);
-    if (!std::isalnum(u) && ch != '-' && ch != '_' && ch != '.' && u < 0x80) ch = '_';
-  }
-  const fs::path path(output);
-  return (path.parent_path() / (path.stem().string() + "-" + label + path.extension().string()))
-      .string();
-}
-
-/// What one pack of wavelength bands needs; a scene of up to kMaxLanes lanes is one pack.
-struct Pack {
-  material::SpectralBasis basis;
-  scene::SurfaceField field;
-};
-
-/// A solution for these pictures alone may leave out what they do not show.
-std::vector<PictureView> views_of(const RenderCommand& c, const std::vector<ViewJob>& jobs) {
-  std::vector<PictureView> views;
-  if (!c.save_solution.empty()) return views;
-  for (const ViewJob& job : jobs) {
-    const auto [width, height] = size_for(c, job.camera);
-    views.push_back({job.camera, static_cast<double>(width) / height, c.crop});
-  }
-  return views;
-}
-
 std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedScene& loaded,
                               Statistics& statistics) {
   const material::SpectralBasis whole = loaded.basis;
@@ -229,6 +130,9 @@ std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedSc
   if (packs.size() > 1 && !c.checkpoint.empty())
     throw Error("--checkpoint: holds up to " + std::to_string(kMaxLanes) + " lanes, not " +
                 std::to_string(whole.lanes()));
+  if (packs.size() > 1 && !c.preview.empty())
+    throw Error("--preview: a picture of more than " + std::to_string(kMaxLanes) +
+                " bands is rendered in parts");
   for (std::size_t i = 0; i < packs.size(); ++i) {
     const double limit = time_share(session, c, 0.5 / static_cast<double>(packs.size() - i));
     loaded.basis = packs[i].basis;
@@ -238,28 +142,29 @@ std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedSc
   return packs;
 }
 
-trace::RenderResult trace_packs(Session& session, const RenderCommand& c,
-                                const PictureEffort& effort, const LoadedScene& loaded,
-                                const std::vector<Pack>& packs, const ViewJob& job, double share) {
-  trace::RenderResult result;
-  for (std::size_t i = 0; i < packs.size(); ++i) {
-    const double limit = time_share(session, c, share / static_cast<double>(packs.size() - i));
-    trace::RenderOptions options = render_options(session, c, effort, job.camera, limit);
-    std::optional<PictureCheckpoint> checkpoint;
-    if (!c.checkpoint.empty())
-      checkpoint.emplace(session, c, loaded, job.camera, options).attach(options);
-    trace::RenderResult part = trace::render(*loaded.query, packs[i].basis, job.camera,
-                                             packs[i].field, options, session.control("render"));
-    if (i == 0)
-      result = std::move(part);
-    else
-      trace::add_pack(result, part);
-  }
-  return result;
+/// Everything the pictures of a run have in common.
+struct Pictures {
+  Session& session;
+  const RenderCommand& command;
+  const PictureEffort& effort;
+  const LoadedScene& loaded;
+  const std::vector<Pack>& packs;
+  trace::ToneMapOptions tone;
+};
+
+/// The picture so far goes to --preview FILE.
+std::function<void(const scene::Image&)> preview_of(const Pictures& p) {
+  if (p.command.preview.empty()) return {};
+  return [&p](const scene::Image& image) {
+    const std::string& file = p.command.preview;
+    scene::write_image(scene::is_display_ending(file) ? trace::tone_map(image, p.tone) : image,
+                       file);
+  };
 }
 
 ViewSummary summarise(const ViewJob& job, const trace::RenderResult& r) {
   return {.camera = job.label,
+          .frame = job.frame,
           .width = r.image.width,
           .height = r.image.height,
           .samples = r.samples_done,
@@ -268,35 +173,100 @@ ViewSummary summarise(const ViewJob& job, const trace::RenderResult& r) {
           .error_estimate = r.error_estimate,
           .bias_estimate = r.bias_estimate,
           .block_error_estimate = r.block_error_estimate,
+          .fireflies = trace::count_fireflies(r.image),
           .stopped_by = r.stopped_by,
           .complete = r.complete,
+          .counters = r.counters,
           .files = {}};
 }
 
-void render_view(Session& session, const RenderCommand& c, const PictureEffort& effort,
-                 const LoadedScene& loaded, const std::vector<Pack>& packs, const ViewJob& job,
-                 double share, Statistics& statistics) {
-  trace::RenderResult result = trace_packs(session, c, effort, loaded, packs, job, share);
+/// Progress of one picture as a part of all of them.
+scene::Control picture_control(Session& session, std::size_t number, std::size_t count,
+                               const ViewJob& job) {
+  scene::Control control = session.control("render");
+  if (job.frame == 0) return control;
+  control.progress = [&session, inner = control.progress, number, count, &job](
+                         std::string_view phase, double fraction, std::string_view remark) {
+    const double all = (static_cast<double>(number) + fraction) / static_cast<double>(count);
+    inner(phase, all, job.label + (remark.empty() ? "" : ", " + std::string(remark)));
+  };
+  return control;
+}
+
+void write_picture(const Pictures& p, scene::Image& image, const ViewJob& job, ViewSummary& view) {
+  for (const std::string& output : p.command.outputs) {
+    const std::string file = file_for(output, job);
+    scene::write_image(scene::is_display_ending(file) ? trace::tone_map(image, p.tone) : image,
+                       file);
+    view.files.push_back(file);
+    p.session.progress.note("wrote " + file);
+  }
+}
+
+/// \return false: a frame of a walk that was interrupted, which is not written.
+bool render_view(const Pictures& p, const ViewJob& job, std::size_t number, std::size_t count,
+                 Statistics& statistics) {
+  const RenderCommand& c = p.command;
+  trace::RenderOptions options = render_options(p.session, c, p.effort, job.camera);
+  options.preview = preview_of(p);
+  std::optional<PictureCheckpoint> checkpoint;
+  if (!c.checkpoint.empty())
+    checkpoint.emplace(p.session, c, p.loaded, job.camera, options).attach(options);
+  const scene::Control control = picture_control(p.session, number, count, job);
+  const double share = 1.0 / static_cast<double>(count - number);
+  const Stopwatch watch;
+  trace::RenderResult result =
+      trace_packs(p.session, c, options, p.loaded, p.packs, job.camera, share, control);
+  ViewSummary view = summarise(job, result);
+  view.wall = watch.wall();
+  view.cpu = watch.cpu();
   statistics.counters += result.counters;
-  session.clock.enter("write");
-  add_metadata(result.image, c, loaded, result);
+  if (job.frame > 0 && !result.complete && p.session.interrupted()) return false;
+  p.session.clock.enter("write");
+  add_metadata(result.image, c, p.loaded, result);
   if (statistics.solve)
     result.image.metadata["atrium:radiosity"] =
         statistics.solve->views > 0 ? "for the views of this run" : "of every surface";
-  ViewSummary view = summarise(job, result);
-  for (const std::string& output : c.outputs) {
-    const std::string file = file_for(output, job);
-    scene::write_image(
-        scene::is_display_ending(file) ? trace::tone_map(result.image, c.tone) : result.image,
-        file);
-    view.files.push_back(file);
-    session.progress.note("wrote " + file);
-  }
-  session.detail(describe(view));
+  write_picture(p, result.image, job, view);
+  p.session.detail(describe(view));
   if ((c.error > 0.0 || c.block_error > 0.0) && view.stopped_by == "samples")
-    session.progress.warning("the error asked for is not reached with --samples " +
-                             std::to_string(effort.samples) + ": " + describe(view));
+    p.session.progress.warning("the error asked for is not reached with --samples " +
+                               std::to_string(p.effort.samples) + ": " + describe(view));
   statistics.views.push_back(std::move(view));
+  return true;
+}
+
+/// All pictures that are asked for, or up to an interrupt.
+void render_views(const Pictures& p, const std::vector<ViewJob>& jobs, Statistics& statistics) {
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (i > 0 && p.session.interrupted()) break;
+    (void)render_view(p, jobs[i], i, jobs.size(), statistics);
+  }
+}
+
+void render_walk(Pictures p, const Walk& walk, const std::vector<ViewJob>& frames,
+                 Statistics& statistics) {
+  Session& session = p.session;
+  const bool tone_mapped =
+      std::any_of(p.command.outputs.begin(), p.command.outputs.end(), scene::is_display_ending) ||
+      scene::is_display_ending(p.command.preview);
+  if (!p.tone.ev && tone_mapped && !session.interrupted()) {
+    p.tone.ev =
+        walk_exposure(session, p.command, p.effort, p.loaded, p.packs, frames, statistics.counters);
+    char text[64];
+    std::snprintf(text, sizeof text, "exposure of all frames: --exposure %.4f", *p.tone.ev);
+    session.progress.note(text);
+  }
+  statistics.walk = WalkSummary{walk.frames, walk.first, walk.last, p.tone.ev};
+  const auto count = static_cast<std::size_t>(walk.last - walk.first + 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int frame = walk.first + static_cast<int>(i);
+    if (!session.interrupted() &&
+        render_view(p, frames[static_cast<std::size_t>(frame - 1)], i, count, statistics))
+      continue;
+    session.progress.warning("interrupted: " + resume_text(walk, frame));
+    return;
+  }
 }
 
 /// How the reference finds light, and what of it it does not.
@@ -336,12 +306,15 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   Statistics statistics;
   statistics.seed = c.solve.seed;
 
+  std::optional<Walk> walk;
+  if (!c.path.empty()) walk = read_walk(c);
   // A solution must fit whatever camera comes later, so the mesh must not depend on this one.
-  const bool own_mesh = c.solution.empty() && c.save_solution.empty();
+  const bool own_mesh = c.solution.empty() && c.save_solution.empty() && !walk;
   LoadedScene loaded = load_scene(
       session, c.scene, {.camera = c.camera, .follow_view = own_mesh, .show_warnings = true});
   if (session.interrupted()) return kInterrupted;
-  const std::vector<ViewJob> jobs = view_jobs(session, c, loaded);
+  const std::vector<ViewJob> jobs =
+      walk ? walk_jobs(*walk, loaded.scene->origin) : camera_jobs(session, c, loaded);
   RenderCommand with_views = c;
   const PictureEffort effort = plan_effort(with_views, *loaded.scene, loaded.features);
   if (!effort.why.empty()) session.detail(effort.why);
@@ -352,11 +325,12 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   with_views.solve.views = views_of(c, jobs);
   const std::vector<Pack> packs = solve_packs(session, with_views, loaded, statistics);
   save_solution(session, c, loaded, packs.front().field);
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (i > 0 && session.interrupted()) break;
-    render_view(session, c, effort, loaded, packs, jobs[i],
-                1.0 / static_cast<double>(jobs.size() - i), statistics);
-  }
+  statistics.timing_of_solving = loaded.query->timing();
+  const Pictures pictures{session, c, effort, loaded, packs, c.tone};
+  if (walk)
+    render_walk(pictures, *walk, jobs, statistics);
+  else
+    render_views(pictures, jobs, statistics);
   warn_about_counts(session, statistics.counters);
   write_statistics(session, loaded, statistics);
   return session.interrupted() ? kInterrupted : 0;

@@ -81,9 +81,9 @@ std::string describe(const ViewSummary& v) {
   std::snprintf(
       text, sizeof text,
       "%.4g samples per pixel, at least %d; estimated error %.3g %% of pixels, %.3g %% of "
-      "8x8 pixels; stopped by %s",
+      "8x8 pixels; stopped by %s; %llu fireflies; %.3g CPU s",
       v.samples_mean, v.samples, 100.0 * v.error_estimate, 100.0 * v.block_error_estimate,
-      v.stopped_by.c_str());
+      v.stopped_by.c_str(), static_cast<unsigned long long>(v.fireflies), v.cpu);
   return text;
 }
 
@@ -104,6 +104,41 @@ void add_counters(JsonWriter& json, const scene::Counters& counters) {
   json.begin_object("counters");
   for (std::size_t i = 0; i < counters.value.size(); ++i) {
     json.member(scene::counter_name(static_cast<scene::Counter>(i)), counters.value[i]);
+  }
+  json.end();
+}
+
+void add_rays(JsonWriter& json, const char* stage, const scene::Counters& counters,
+              const scene::RayTiming& timing, double cpu) {
+  const double embree = timing.seconds(counters);
+  json.begin_object(stage);
+  json.member("rays", counters.rays());
+  json.member("cpu", cpu);
+  json.member("embree_seconds", embree);
+  if (cpu > 0.0) {
+    json.member("per_cpu_second", static_cast<double>(counters.rays()) / cpu);
+    json.member("embree_share", embree / cpu);
+  }
+  json.end();
+}
+
+/// Rays per CPU second, and what share of it was Embree's, of the solve and of the pictures.
+void add_ray_rates(JsonWriter& json, const PhaseClock& clock, const scene::RayTiming& timing,
+                   const Statistics& s) {
+  const auto cpu_of = [&](std::initializer_list<std::string_view> names) {
+    double sum = 0.0;
+    for (const PhaseClock::Phase& p : clock.phases())
+      if (std::find(names.begin(), names.end(), p.name) != names.end()) sum += p.cpu;
+    return sum;
+  };
+  json.begin_object("rays");
+  if (s.solve)
+    add_rays(json, "solve", s.solve->counters, s.timing_of_solving,
+             cpu_of({"mesh", "direct", "radiosity"}));
+  if (!s.views.empty()) {
+    scene::Counters pictures;
+    for (const ViewSummary& v : s.views) pictures += v.counters;
+    add_rays(json, "render", pictures, timing - s.timing_of_solving, cpu_of({"render"}));
   }
   json.end();
 }
@@ -215,6 +250,7 @@ void add_views(JsonWriter& json, const Statistics& s) {
   for (const ViewSummary& v : s.views) {
     json.begin_object();
     json.member("camera", v.camera);
+    if (v.frame > 0) json.member("frame", v.frame);
     json.member("width", v.width);
     json.member("height", v.height);
     json.member("samples", v.samples);
@@ -223,13 +259,29 @@ void add_views(JsonWriter& json, const Statistics& s) {
     json.member("error_estimate", v.error_estimate);
     json.member("bias_estimate", v.bias_estimate);
     json.member("block_error_estimate", v.block_error_estimate);
+    json.member("fireflies", v.fireflies);
     json.member("stopped_by", v.stopped_by);
     json.member("complete", v.complete);
+    json.member("wall", v.wall);
+    json.member("cpu", v.cpu);
+    add_counters(json, v.counters);
     json.begin_array("files");
     for (const std::string& f : v.files) json.element(f);
     json.end();
     json.end();
   }
+  json.end();
+}
+
+void add_walk(JsonWriter& json, const WalkSummary& w) {
+  json.begin_object("walk");
+  json.member("frames", w.frames);
+  json.member("first", w.first);
+  json.member("last", w.last);
+  if (w.ev)
+    json.member("exposure", *w.ev);
+  else
+    json.null("exposure");
   json.end();
 }
 
@@ -247,10 +299,12 @@ void write_statistics(Session& session, const LoadedScene& loaded, const Statist
   add_phases(json, session.clock);
   json.member("wall", session.clock.elapsed());
   add_counters(json, s.counters);
+  add_ray_rates(json, session.clock, loaded.query->timing(), s);
   add_error(json, s);
   add_solve(json, s);
   if (!s.views.empty()) add_views(json, s);
   if (s.reference) add_reference(json, *s.reference);
+  if (s.walk) add_walk(json, *s.walk);
   json.begin_object("scene");
   json.member("triangles", loaded.scene->triangle_count());
   json.member("objects", static_cast<std::uint64_t>(loaded.scene->objects.size()));

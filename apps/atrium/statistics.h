@@ -46,14 +46,24 @@ struct SolveSummary {
 /// What one picture took.
 struct ViewSummary {
   std::string camera;
+  int frame = 0;  ///< of a walk, from 1; 0: none
   int width = 0, height = 0;
   int samples = 0;  ///< of a pixel, fewest
   double samples_mean = 0.0;
   int rounds = 0;  ///< towards an error asked for
   double error_estimate = 0.0, bias_estimate = 0.0, block_error_estimate = 0.0;
+  std::uint64_t fireflies = 0;  ///< trace/fireflies.h
   std::string stopped_by;
   bool complete = true;
+  scene::Counters counters;
+  double wall = 0.0, cpu = 0.0;  ///< of rendering [s]
   std::vector<std::string> files;
+};
+
+/// Frames of --path.
+struct WalkSummary {
+  int frames = 0, first = 0, last = 0;
+  std::optional<double> ev;  ///< of all of them; absent: nothing was tone mapped
 };
 
 /// One line for people.
@@ -67,6 +77,8 @@ struct Statistics {
   std::string radiosity_skipped;  ///< the reason, if it was
   std::vector<ViewSummary> views;
   std::optional<trace::PathStrategy> reference;     ///< of --method path
+  std::optional<WalkSummary> walk;
+  scene::RayTiming timing_of_solving;               ///< up to the first picture
   double picture_target = 0.0, block_target = 0.0;  ///< errors asked for; 0: none
   std::uint64_t seed = 1;
 };

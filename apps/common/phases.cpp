@@ -44,6 +44,12 @@ double PhaseClock::elapsed() const {
   return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
+Stopwatch::Stopwatch() : start_(std::chrono::steady_clock::now()), cpu_start_(cpu_seconds()) {}
+double Stopwatch::wall() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+double Stopwatch::cpu() const { return cpu_seconds() - cpu_start_; }
+
 double peak_memory_mb() {
   // Not ru_maxrss: that one starts with the size of the process that started this one.
   std::ifstream status("/proc/self/status");

@@ -33,6 +33,18 @@ class PhaseClock {
   std::vector<Phase> phases_;
 };
 
+/// Time from construction on.
+class Stopwatch {
+ public:
+  Stopwatch();
+  [[nodiscard]] double wall() const;  ///< [s]
+  [[nodiscard]] double cpu() const;   ///< [s], as Phase::cpu
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  double cpu_start_;
+};
+
 /// Largest resident memory of the process so far [MB, 1e6 bytes].
 [[nodiscard]] double peak_memory_mb();
 

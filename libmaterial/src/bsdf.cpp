@@ -285,6 +285,10 @@ template <int N>
 typename Bsdf<N>::Choice Bsdf<N>::choose(const Vec3f& wo, std::uint32_t events) const {
   events &= events_;
   Choice c;
+  if (events == kDiffuseReflection) {  // most surfaces have nothing to choose
+    c.diffuse_reflection = diffuse_reflectance(wo).mean() > kNegligible ? 1.0f : 0.0f;
+    return c;
+  }
   const float mu = wo.z();
   if ((events & kDiffuseReflection) != 0) c.diffuse_reflection = diffuse_reflectance(wo).mean();
   if ((events & kDiffuseTransmission) != 0) c.diffuse_transmission = diffuse_transmission_.mean();

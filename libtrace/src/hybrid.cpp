@@ -23,48 +23,63 @@ struct Parts {
   bool direct, caustic, indirect;
 };
 
-template <int N>
-Spectrum<N> stored(const SurfaceField& field, const SurfaceField::Quantities& q,
-                   const SurfaceField::Stencil& s, Side side, Parts parts) {
-  Spectrum<N> e;
-  if (parts.direct) e += field.interpolate<N>(q.direct, s, side);
-  if (parts.caustic) e += field.interpolate<N>(q.caustic, s, side);
-  if (parts.indirect) e += field.interpolate<N>(q.indirect, s, side);
-  return e;
-}
-
-/// Edge of the element at a point [m]; 0 where there is none.
-float element_size(const SurfaceField& field, const scene::Scene& scene,
-                   const scene::SurfacePoint& p) {
-  const std::uint32_t e = field.element_at(scene, p.object, p.triangle, p.position);
-  return e == SurfaceField::kNone ? 0.0f : field.element_size(e);
-}
-
 /// Radiance towards the viewer that the field gives at a point, by reflection and by transmission
 /// of what arrives on the other side.
 template <int N>
 struct FieldRadiance {
   Spectrum<N> reflected, transmitted;
 };
+
+/// What the field knows at a point of a surface: looked for once, summed as often as needed.
 template <int N>
-FieldRadiance<N> field_radiance(const View<N>& view, const scene::Interaction<N>& surface,
-                                const Vec3f& wo, Parts parts) {
-  FieldRadiance<N> r;
-  if (view.field.empty() || !surface.bsdf.has(kDiffuseEvents)) return r;
-  const scene::SurfacePoint& p = surface.point;
-  const auto irradiance = [&](Side side, const SurfaceField::Quantities& q) {
-    const auto s = view.field.stencil(view.shading.scene(), p.object, p.triangle, p.position, side);
-    return stored<N>(view.field, q, s, side, parts);
-  };
-  if (surface.bsdf.has(kDiffuseReflection)) {
-    const auto& q = surface.bsdf.coupled() ? view.field.body_irradiance : view.field.irradiance;
-    r.reflected = surface.bsdf.diffuse_reflectance(wo) * irradiance(surface.side, q) * kInvPi;
+class FieldPoint {
+ public:
+  /// The field must not be empty.
+  FieldPoint(const View<N>& view, const scene::Interaction<N>& surface)
+      : FieldPoint(view, surface,
+                   view.field.spot(view.shading.scene(), surface.point.object,
+                                   surface.point.triangle, surface.point.position)) {}
+  FieldPoint(const View<N>& view, const scene::Interaction<N>& surface,
+             const SurfaceField::Spot& spot)
+      : view_(view),
+        surface_(surface),
+        spot_(spot),
+        here_(view.field.stencil(spot, surface.side)) {}
+
+  /// Of everything on the viewer's side.
+  [[nodiscard]] Spectrum<N> irradiance() const {
+    return view_.field.template interpolate<N>(view_.arriving, here_, surface_.side);
   }
-  if (surface.bsdf.has(kDiffuseTransmission))
-    r.transmitted = surface.bsdf.diffuse_transmittance() *
-                    irradiance(other(surface.side), view.field.irradiance) * kInvPi;
-  return r;
-}
+  [[nodiscard]] Spectrum<N> reflected(const Vec3f& wo, Parts parts) const {
+    if (!surface_.bsdf.has(kDiffuseReflection)) return {};
+    const auto& q = surface_.bsdf.coupled() ? view_.field.body_irradiance : view_.field.irradiance;
+    return surface_.bsdf.diffuse_reflectance(wo) * sum(q, here_, surface_.side, parts) * kInvPi;
+  }
+  [[nodiscard]] Spectrum<N> transmitted(Parts parts) const {
+    if (!surface_.bsdf.has(kDiffuseTransmission)) return {};
+    const Side side = other(surface_.side);
+    return surface_.bsdf.diffuse_transmittance() *
+           sum(view_.field.irradiance, view_.field.stencil(spot_, side), side, parts) * kInvPi;
+  }
+  [[nodiscard]] FieldRadiance<N> radiance(const Vec3f& wo, Parts parts) const {
+    return {reflected(wo, parts), transmitted(parts)};
+  }
+
+ private:
+  Spectrum<N> sum(const SurfaceField::Quantities& q, const SurfaceField::Stencil& s, Side side,
+                  Parts parts) const {
+    Spectrum<N> e;
+    if (parts.direct) e += view_.field.template interpolate<N>(q.direct, s, side);
+    if (parts.caustic) e += view_.field.template interpolate<N>(q.caustic, s, side);
+    if (parts.indirect) e += view_.field.template interpolate<N>(q.indirect, s, side);
+    return e;
+  }
+
+  const View<N>& view_;
+  const scene::Interaction<N>& surface_;
+  SurfaceField::Spot spot_;
+  SurfaceField::Stencil here_;
+};
 
 /// Light sources as seen from a point. Body and lobe have different rivals among the sampled
 /// directions: gather rays for the body (if there are any), specular rays for the lobe.
@@ -110,6 +125,7 @@ template <int N>
 bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth,
                    scene::Ray& ray, Spectrum<N>& beta, ScatterVertex& vertex, Event& event,
                    scene::Sampler& sampler) {
+  if (!surface.bsdf.has(kSpecularEvents)) return false;
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
   const auto s = surface.bsdf.sample(wo, u_choice, u, kSpecularEvents);
@@ -135,27 +151,67 @@ template <int N>
 struct SentLight {
   Spectrum<N> all, once, caustic;
 };
-/// What the body of a surface sends towards a diffuse point. Closer than an element, its mean
-/// direct light is too coarse: look at the lights again. \param straight  nothing but panes lies
-/// between.
+/// Irradiance at the end of a ray [as the field]. From afar one ray of many sees an element as a
+/// whole, whose own value is its mean; close by it is interpolated. \param part  of the field.
 template <int N>
-SentLight<N> sent_light(const View<N>& view, const scene::SurfacePoint& receiver,
-                        const scene::Interaction<N>& surface, const Vec3f& wo, bool straight,
-                        scene::Sampler& sampler, scene::Counters& counters) {
+Spectrum<N> irradiance_seen(const View<N>& view, const std::vector<float>& part,
+                            const SurfaceField::Spot& spot, Side side, float distance) {
+  constexpr float kFar = 4.0f;  // element edges
+  const SurfaceField& field = view.field;
+  if (spot.element == SurfaceField::kNone || part.empty()) return {};
+  const std::size_t i = std::size_t{spot.element} * 2 + static_cast<std::size_t>(side);
+  if (field.valid[i] != 0 && distance > kFar * field.element_size(spot.element))
+    return field.value<N>(part, spot.element, side);
+  return field.interpolate<N>(part, field.stencil(spot, side), side);
+}
+
+/// A place that gather rays end at, as the field has it.
+template <int N>
+struct Place {
+  /// \param straight  nothing but panes lies before it.
+  Place(const View<N>& view, const scene::SurfacePoint& point, const Vec3f& receiver, bool straight)
+      : spot(view.field.spot(view.shading.scene(), point.object, point.triangle, point.position)),
+        distance((point.position - receiver).norm()),
+        near(straight && spot.element != SurfaceField::kNone &&
+             distance < view.field.element_size(spot.element)) {}
+
+  SurfaceField::Spot spot;
+  float distance;
+  bool near;  ///< closer than an element, whose mean direct light is too coarse then
+};
+
+/// Light from a surface that is the same in all directions and does nothing else, not near.
+template <int N>
+SentLight<N> matte_light(const View<N>& view, const scene::SurfacePoint& point, Side side,
+                         const Place<N>& place) {
+  const Spectrum<N> factor = view.shading.matte_reflectance(point) * kInvPi;
+  const auto of = [&](const std::vector<float>& part) {
+    return factor * irradiance_seen(view, part, place.spot, side, place.distance);
+  };
+  SentLight<N> sent{of(view.arriving), {}, {}};
+  if (!view.options.classes) return sent;
+  sent.once = of(view.field.irradiance.direct);
+  sent.caustic = of(view.field.irradiance.caustic);
+  return sent;
+}
+
+/// Light from the body of any surface; near by the lights are looked at again.
+template <int N>
+SentLight<N> body_light(const View<N>& view, const scene::Interaction<N>& surface, const Vec3f& wo,
+                        const Place<N>& place, scene::Sampler& sampler, scene::Counters& counters) {
   SentLight<N> sent;
   if (!surface.bsdf.has(kDiffuseEvents)) return sent;
-  const bool close = straight && (surface.point.position - receiver.position).norm() <
-                                     element_size(view.field, view.shading.scene(), surface.point);
-  const auto of_field = [&](Parts parts) {
-    const FieldRadiance<N> r = field_radiance(view, surface, wo, parts);
+  const FieldPoint<N> field(view, surface, place.spot);
+  const auto of = [&](Parts parts) {
+    const FieldRadiance<N> r = field.radiance(wo, parts);
     return r.reflected + r.transmitted;
   };
-  sent.all = of_field({!close, true, true});
+  sent.all = of({!place.near, true, true});
   if (view.options.classes) {
-    sent.once = of_field({!close, false, false});
-    sent.caustic = of_field({false, true, false});
+    sent.once = of({!place.near, false, false});
+    sent.caustic = of({false, true, false});
   }
-  if (close) {
+  if (place.near) {
     const DirectLight<N> d =
         direct_light<N>(view, surface, wo, nullptr, Lobes::LeftToCaustics, sampler, counters);
     sent.all += d.reflected + d.transmitted;
@@ -164,20 +220,27 @@ SentLight<N> sent_light(const View<N>& view, const scene::SurfacePoint& receiver
   return sent;
 }
 
+/// Side of a surface that a ray comes from.
+Side side_towards(const scene::SurfacePoint& point, const Vec3f& direction) {
+  return point.ng.dot(direction) <= 0.0f ? Side::Front : Side::Back;
+}
+
 /// Density [1/sr] of points on bright surfaces, seen from a point that light reaches straight.
 float bright_pdf(float pdf_area, const Vec3f& between, float sender_cosine) {
   return sender_cosine > 0.0f ? pdf_area * between.squaredNorm() / sender_cosine : 0.0f;
 }
 
 /// The part of a bright surface's light that a gather ray accounts for which met it by chance.
+/// \param direction  of the ray.
 template <int N>
 float share_of_chance(const View<N>& view, const ScatterVertex& from,
-                      const scene::Interaction<N>& surface) {
+                      const scene::SurfacePoint& point, const Vec3f& direction) {
   if (view.bright.empty()) return 1.0f;
-  const float pdf_area = view.bright.pdf(from.position, from.normal, surface.point, surface.side);
+  const float pdf_area =
+      view.bright.pdf(from.position, from.normal, point, side_towards(point, direction));
   if (!(pdf_area > 0.0f)) return 1.0f;
-  const Vec3f between = surface.point.position - from.position;
-  return mis_weight(from.pdf, bright_pdf(pdf_area, between, -between.normalized().dot(surface.ng)));
+  const Vec3f between = point.position - from.position;
+  return mis_weight(from.pdf, bright_pdf(pdf_area, between, std::abs(direction.dot(point.ng))));
 }
 
 /// One ray from a diffuse point into its hemisphere (or through the sheet): radiance that arrives,
@@ -220,16 +283,24 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
             beta * sky_radiance(shading, ray) * environment_weight(shading, vertex, ray.direction);
       break;
     }
+    const auto add_emission = [&] {
+      if (!straight) return;
+      const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
+      if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
+    };
+    const Place<N> place(view, *hit, from.point.position, straight);
+    const float share = straight ? share_of_chance(view, vertex, *hit, ray.direction) : 1.0f;
+    if (!place.near && shading.is_matte(hit->material)) {  // where most rays end
+      beta *= shading.through_medium(ray, distance);
+      add_emission();
+      g.take(matte_light(view, *hit, side_towards(*hit, ray.direction), place), beta * share);
+      break;
+    }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
     beta *= segment_transmittance(shading, surface, ray, distance);
-    if (straight) {
-      const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
-      if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
-    }
-    const SentLight<N> sent =
-        sent_light(view, from.point, surface, wo, straight, sampler, counters);
-    g.take(sent, straight ? beta * share_of_chance(view, vertex, surface) : beta);
+    add_emission();
+    g.take(body_light(view, surface, wo, place, sampler, counters), beta * share);
     Event event{};
     if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
     straight &= event == kPaneStraight;
@@ -263,10 +334,16 @@ Gathered<N> look_at_bright(const View<N>& view, const scene::Interaction<N>& fro
   const Spectrum<N> visible =
       shading.transmittance(scene::segment(from.point, s->point), counters, Counter::RaysGather);
   if (visible.is_zero()) return g;
-  const scene::Interaction<N> surface = shading.interact(s->point, -w);
+  const Place<N> place(view, s->point, from.point.position, true);
+  SentLight<N> sent;
+  if (!place.near && shading.is_matte(s->point.material)) {
+    sent = matte_light(view, s->point, s->side, place);
+  } else {
+    const scene::Interaction<N> surface = shading.interact(s->point, -w);
+    sent = body_light(view, surface, surface.to_local(-w), place, sampler, counters);
+  }
   g.reflected = wi.z() > 0.0f;
-  g.take(sent_light(view, from.point, surface, surface.to_local(-w), true, sampler, counters),
-         f * visible * (std::abs(wi.z()) / pdf * mis_weight(pdf, directions.pdf(wi))));
+  g.take(sent, f * visible * (std::abs(wi.z()) / pdf * mis_weight(pdf, directions.pdf(wi))));
   return g;
 }
 
@@ -321,12 +398,8 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
       out.depth = distance;
       out.normal = surface.frame.z;
       out.albedo = surface.bsdf.albedo(wo, kAllEvents);
-      if (has_field) {
-        const auto s = view.field.stencil(shading.scene(), hit->object, hit->triangle,
-                                          hit->position, surface.side);
-        out.irradiance =
-            stored<N>(view.field, view.field.irradiance, s, surface.side, {true, true, true});
-      }
+      if (has_field && !surface.bsdf.has(kDiffuseEvents))
+        out.irradiance = FieldPoint(view, surface).irradiance();
     }
     const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
     if (!emitted.is_zero()) add_emission(depth, emitted * emission_weight(shading, vertex, *hit));
@@ -348,13 +421,15 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
       out.body_direct = direct.body;
     }
     if (has_field && surface.bsdf.has(kDiffuseEvents)) {
-      const FieldRadiance<N> r = field_radiance(view, surface, wo, {false, true, !gathers});
+      const FieldPoint<N> field(view, surface);
+      if (depth == 0) out.irradiance = field.irradiance();
+      const FieldRadiance<N> r = field.radiance(wo, {false, true, !gathers});
       add(depth, Term::IndirectReflection, r.reflected);
       add(depth, Term::IndirectTransmission, r.transmitted);
       add_class(LightClass::LSDE, r.reflected + r.transmitted);
       // What the field knows needs no sharing: what samples find beside it has less shape.
       if (depth == 0 && gathers && view.options.share_samples)
-        out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
+        out.body_indirect -= field.reflected(wo, {false, false, true});
       const auto take = [&](const Gathered<N>& g) {
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);

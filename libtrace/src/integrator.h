@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "gather_guide.h"
 #include "pixel_sample.h"
 #include "scene/bright_surfaces.h"
@@ -21,6 +24,17 @@ struct View {
 
   /// Edge of a tile [m] as seen after so many metres.
   [[nodiscard]] float tile_reach(float distance) const { return tile_near + tile_angle * distance; }
+  std::vector<float> arriving = whole(field.irradiance);  ///< direct, caustic and indirect together
+
+ private:
+  static std::vector<float> whole(const scene::SurfaceField::Quantities& q) {
+    std::vector<float> sum = q.direct;
+    for (const std::vector<float>* part : {&q.caustic, &q.indirect}) {
+      sum.resize(std::max(sum.size(), part->size()));
+      for (std::size_t i = 0; i < part->size(); ++i) sum[i] += (*part)[i];
+    }
+    return sum;
+  }
 };
 
 /// Unbiased path tracing with next event estimation and multiple importance sampling.

@@ -1,6 +1,7 @@
 #include "rounds.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -12,10 +13,14 @@ namespace atrium::trace {
 namespace {
 
 constexpr std::uint32_t kFirst = 2 * kReplicates;  // samples of a pixel before any estimate
+constexpr std::uint32_t kLargestPass = 16;         // samples of a pixel
 constexpr int kBlock = 8;                          // edge of the blocks of the block error
+constexpr std::uint32_t kMostOfPixel = 1U << 16;   // samples
 constexpr double kAim = 0.97;    // of the target: a round that just misses it costs another one
 constexpr double kGrowth = 2.0;  // of the cost of the picture in one round
 constexpr double kLeast = 1.1;   // an estimate that is about the target needs some more to move
+
+using Clock = std::chrono::steady_clock;
 
 struct Errors {
   ErrorEstimate pixel, block;
@@ -33,7 +38,7 @@ double excess(const Errors& e, const RenderOptions& o) {
 
 std::string remark_of(const Errors& e, const RenderOptions& o) {
   char text[64];
-  if (o.error > 0.0)
+  if (o.error > 0.0 || !(o.block_error > 0.0))
     std::snprintf(text, sizeof text, "error %.3g %%", 100.0 * e.pixel.value);
   else
     std::snprintf(text, sizeof text, "error of blocks %.3g %%", 100.0 * e.block.value);
@@ -60,14 +65,30 @@ class Rounds {
   /// Passes of doubling size: a picture of the whole view early, few synchronisations later.
   bool uniform(std::uint32_t samples, double progress_to) {
     for (std::uint32_t n = 0; n < samples;) {
-      const std::uint32_t next = std::min(samples, n + std::clamp(n, 1U, 16U));
+      const std::uint32_t next = std::min(samples, n + std::clamp(n, 1U, kLargestPass));
       std::fill(samples_.begin(), samples_.end(), next);
       const double share = progress_to / samples;
       if (!pass_(samples_, {share * n, share * next, {}})) return false;
       n = next;
+      if (n < samples && preview_due()) show(film_.develop());
     }
     result_.stopped_by = "samples";
     return true;
+  }
+
+  /// As many rays as `mean` samples of every pixel take, where they lower the error most.
+  void spread(std::uint32_t mean) {
+    if (mean <= kFirst) {
+      (void)uniform(mean, 1.0);
+      return;
+    }
+    const double first = static_cast<double>(kFirst) / mean;
+    if (!uniform(kFirst, first)) return;
+    const Errors now = develop();
+    plan_from(now);
+    samples_ = allot_samples(plan_, {.goal = 0.0, .growth = 1.0 / first, .most = kMostOfPixel});
+    ++result_.rounds;
+    (void)pass_(samples_, {first, 1.0, remark_of(now, options_)});
   }
 
   void until_error() {
@@ -103,15 +124,32 @@ class Rounds {
   }
 
  private:
-  Errors develop() { return estimate(film_.develop()); }
+  Errors develop() {
+    const PictureSamples samples = film_.develop();
+    if (preview_due()) show(samples);
+    return estimate(samples);
+  }
+
+  [[nodiscard]] bool preview_due() const {
+    return options_.preview &&
+           Clock::now() - shown_ >= std::chrono::duration<double>(options_.preview_seconds);
+  }
+  void show(const PictureSamples& samples) {
+    options_.preview(film_.image(error_layer(samples)));
+    shown_ = Clock::now();
+  }
+
+  void plan_from(const Errors& now) {
+    plan_.noise = now.pixel.noise_squares;
+    plan_.bias = now.pixel.bias_squares;
+    plan_.count = samples_;
+    plan_.cost = cost_;
+  }
 
   /// false: every pixel has all the samples that it may get.
   bool plan_round(const Errors& now, double excess, std::uint32_t most) {
     const ErrorEstimate& e = now.pixel;
-    plan_.noise = e.noise_squares;
-    plan_.bias = e.bias_squares;
-    plan_.count = samples_;
-    plan_.cost = cost_;
+    plan_from(now);
     const double reduce = std::max(excess / kAim, std::sqrt(kLeast));
     samples_ = allot_samples(plan_, {.goal = e.value / reduce, .growth = kGrowth, .most = most});
     if (samples_ != plan_.count) return true;
@@ -129,6 +167,7 @@ class Rounds {
   std::vector<std::uint32_t>& samples_;
   RenderResult& result_;
   PixelCosts plan_;
+  Clock::time_point shown_;  // the last preview; long ago at first
 };
 
 }  // namespace
@@ -138,6 +177,8 @@ void take_samples(Film& film, int width, int height, const RenderOptions& option
   Rounds rounds(film, width, height, options, pass, cost, state, result);
   if (options.error > 0.0 || options.block_error > 0.0)
     rounds.until_error();
+  else if (options.spread)
+    rounds.spread(static_cast<std::uint32_t>(options.samples));
   else
     rounds.uniform(static_cast<std::uint32_t>(options.samples), 1.0);
   rounds.finish();

@@ -8,10 +8,10 @@
 namespace atrium::trace {
 namespace {
 
-constexpr int kLevels = 5;       // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
-constexpr float kErrors = 3.0f;  // standard errors of a difference that noise may explain
-constexpr float kNormalPower = 48.0f;
-constexpr float kPlane = 0.1f;  // tangent of the slope that counts as the same surface
+constexpr int kLevels = 5;        // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
+constexpr float kErrors = 3.0f;   // standard errors of a difference that noise may explain
+constexpr float kNothing = 5.0f;  // exp(-5^2) of a neighbour's light is none
+constexpr float kPlane = 0.1f;    // tangent of the slope that counts as the same surface
 constexpr std::array<float, 3> kSpline{0.375f, 0.25f, 0.0625f};  // B3
 
 template <class F>
@@ -23,49 +23,92 @@ void for_rows(const ShareGuides& guides, F&& pixel) {
                       });
 }
 
-/// The state between two levels: the replicates, and each half's own average that guides the other.
-struct Levels {
-  Illumination light;
-  std::array<std::vector<Rgb>, 2> guide;
+/// What one half's weights average in a pixel, as the machine adds it four by four: the half's own
+/// mean (the guide), its luminance, and the two replicates of the other half.
+struct Guided {
+  Eigen::Array4f guide = Eigen::Array4f::Zero();   // R, G, B, luminance
+  Eigen::Array4f first = Eigen::Array4f::Zero();   // R, G, B of the first, R of the second
+  Eigen::Array4f second = Eigen::Array4f::Zero();  // G, B of the second
+
+  void add(const Guided& other, float weight) {
+    guide += weight * other.guide;
+    first += weight * other.first;
+    second += weight * other.second;
+  }
+  void scale(float factor) {
+    guide *= factor;
+    first *= factor;
+    second *= factor;
+  }
 };
+
+/// The state between two levels, by pixel.
+struct Levels {
+  std::vector<std::array<Guided, 2>> light;  // by guiding half
+  std::vector<float> variance;
+};
+
+Levels pack(const Illumination& in) {
+  Levels levels{std::vector<std::array<Guided, 2>>(in.variance.size()), in.variance};
+  for (std::size_t i = 0; i < in.variance.size(); ++i)
+    for (std::size_t h = 0; h < 2; ++h) {
+      Guided& g = levels.light[i][h];
+      const Rgb own = (in.replicate[2 * h][i] + in.replicate[2 * h + 1][i]) * 0.5f;
+      const std::size_t other = 2 * (1 - h);
+      const Rgb &a = in.replicate[other][i], &b = in.replicate[other + 1][i];
+      g.guide = {own[0], own[1], own[2], luminance(own)};
+      g.first = {a[0], a[1], a[2], b[0]};
+      g.second = {b[1], b[2], 0.0f, 0.0f};
+    }
+  return levels;
+}
+
+Illumination unpack(const Levels& levels) {
+  Illumination out;
+  for (auto& r : out.replicate) r.resize(levels.light.size());
+  for (std::size_t i = 0; i < levels.light.size(); ++i)
+    for (std::size_t h = 0; h < 2; ++h) {
+      const Guided& g = levels.light[i][h];
+      const std::size_t other = 2 * (1 - h);
+      out.replicate[other][i] = make_rgb(g.first[0], g.first[1], g.first[2]);
+      out.replicate[other + 1][i] = make_rgb(g.first[3], g.second[0], g.second[1]);
+    }
+  out.variance = levels.variance;
+  return out;
+}
 
 class Level {
  public:
   // Weights are the same from p to q as from q to p: what a pixel gives away others receive.
   Level(const ShareGuides& guides, const Levels& in, int step)
-      : g_(guides), in_(in), step_(step), noise_(in.light.variance.size()) {
+      : g_(guides), in_(in), step_(step), noise_(in.variance.size()) {
     for_rows(guides, [&](int x, int y) { noise_[index(x, y)] = blurred_variance(x, y); });
   }
 
   void pixel(int x, int y, Levels& out) const {
     const std::size_t p = index(x, y);
     if (!(g_.depth[p] > 0.0f)) {
-      for (std::size_t r = 0; r < kReplicates; ++r)
-        out.light.replicate[r][p] = in_.light.replicate[r][p];
-      for (std::size_t h = 0; h < 2; ++h) out.guide[h][p] = in_.guide[h][p];
-      out.light.variance[p] = in_.light.variance[p];
+      out.light[p] = in_.light[p];
+      out.variance[p] = in_.variance[p];
       return;
     }
-    std::array<Rgb, kReplicates> sum;
-    std::array<Rgb, 2> guide;
+    std::array<Guided, 2> sum;
     std::array<float, 2> weights{}, variance{};
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx) {
         const int qx = x + dx * step_, qy = y + dy * step_;
+        if (std::abs(dx * dy) == 4) continue;  // the corners of the spline are 1/64 of it
         if (qx < 0 || qy < 0 || qx >= g_.width || qy >= g_.height) continue;
         const std::size_t q = index(qx, qy);
-        const float surface = kSpline[static_cast<std::size_t>(std::abs(dx))] *
-                              kSpline[static_cast<std::size_t>(std::abs(dy))] *
-                              (p == q ? 1.0f : same_surface(p, q));
-        if (!(surface > 0.0f)) continue;
+        const float spline = kSpline[static_cast<std::size_t>(std::abs(dx))] *
+                             kSpline[static_cast<std::size_t>(std::abs(dy))];
+        const Weights likeness = p == q ? Weights{1.0f, 1.0f} : alike(p, q);
         for (std::size_t h = 0; h < 2; ++h) {
-          const float w = p == q ? surface : surface * same_light(in_.guide[h], p, q);
-          guide[h] += in_.guide[h][q] * w;
-          const std::size_t other = 2 * (1 - h);
-          sum[other] += in_.light.replicate[other][q] * w;
-          sum[other + 1] += in_.light.replicate[other + 1][q] * w;
+          const float w = spline * likeness[h];
+          if (!(w > 0.0f)) continue;
+          sum[h].add(in_.light[q][h], w);
           weights[h] += w;
-          variance[h] += w * w * in_.light.variance[q];
+          variance[h] += w * w * in_.variance[q];
         }
       }
     // From the second level on neighbours hold some of the same samples: composed, the splines
@@ -73,14 +116,11 @@ class Level {
     constexpr float kOverlap = 3.3f;
     float independent = 0.0f;
     for (std::size_t h = 0; h < 2; ++h) {
-      out.guide[h][p] = guide[h] / weights[h];
-      const std::size_t other = 2 * (1 - h);
-      out.light.replicate[other][p] = sum[other] / weights[h];
-      out.light.replicate[other + 1][p] = sum[other + 1] / weights[h];
+      sum[h].scale(1.0f / weights[h]);
       independent += 0.5f * variance[h] / (weights[h] * weights[h]);
     }
-    out.light.variance[p] =
-        step_ > 1 ? std::min(kOverlap * independent, in_.light.variance[p]) : independent;
+    out.light[p] = sum;
+    out.variance[p] = step_ > 1 ? std::min(kOverlap * independent, in_.variance[p]) : independent;
   }
 
  private:
@@ -99,31 +139,43 @@ class Level {
         if (!(g_.depth[q] > 0.0f)) continue;
         const float w = kSpline[static_cast<std::size_t>(std::abs(dx))] *
                         kSpline[static_cast<std::size_t>(std::abs(dy))];
-        sum += w * in_.light.variance[q];
+        sum += w * in_.variance[q];
         weights += w;
       }
     return weights > 0.0f ? sum / weights : 0.0f;
   }
-  [[nodiscard]] float same_surface(std::size_t p, std::size_t q) const {
-    if (!(g_.depth[q] > 0.0f)) return 0.0f;
+  /// How much of q's light p takes, by guiding half: as far as they are of one surface and differ
+  /// by no more than noise explains.
+  using Weights = std::array<float, 2>;
+  [[nodiscard]] Weights alike(std::size_t p, std::size_t q) const {
+    if (!(g_.depth[q] > 0.0f)) return {};
     const float cosine = g_.normal[p].dot(g_.normal[q]);
-    if (!(cosine > 0.0f)) return 0.0f;
+    if (!(cosine > 0.0f)) return {};
     const Vec3f d = g_.position[q] - g_.position[p];
     const float height = std::max(std::abs(d.dot(g_.normal[p])), std::abs(d.dot(g_.normal[q])));
     const float off_plane =
         height / (kPlane * d.norm() + 1e-5f * std::max(g_.depth[p], g_.depth[q]));
-    return std::pow(cosine, kNormalPower) * std::exp(-off_plane * off_plane);
-  }
-  [[nodiscard]] float same_light(const std::vector<Rgb>& value, std::size_t p,
-                                 std::size_t q) const {
-    const float difference = luminance(value[p]) - luminance(value[q]);
+    if (off_plane > kNothing) return {};
     // Harmonic mean: a pixel that is sure of its light does not take from one that is not, as next
     // to a lamp that nearly touches a ceiling.
-    const float sum = noise_[p] + noise_[q];
+    const float noise = noise_[p] + noise_[q];
     const float allowed =
-        sum > 0.0f ? kErrors * kErrors * 2.0f * noise_[p] * noise_[q] / sum : 0.0f;
-    if (!(allowed > 0.0f)) return difference == 0.0f ? 1.0f : 0.0f;
-    return std::exp(-difference * difference / allowed);
+        noise > 0.0f ? kErrors * kErrors * 2.0f * noise_[p] * noise_[q] / noise : 0.0f;
+    const auto unlikeness = [&](std::size_t h) {
+      const float x = in_.light[p][h].guide[3] - in_.light[q][h].guide[3];
+      if (allowed > 0.0f) return x * x / allowed;
+      return x == 0.0f ? 0.0f : kNothing * kNothing;
+    };
+    const Eigen::Array4f e =
+        (-Eigen::Array4f(off_plane * off_plane, unlikeness(0), unlikeness(1), 0.0f))
+            .max(-kNothing * kNothing)
+            .exp();
+    const float surface = power_48(cosine) * e[0];
+    return {surface * e[1], surface * e[2]};
+  }
+  static float power_48(float x) {
+    const float x2 = x * x, x4 = x2 * x2, x8 = x4 * x4, x16 = x8 * x8;
+    return x16 * x16 * x16;
   }
 
   const ShareGuides& g_;
@@ -135,20 +187,14 @@ class Level {
 }  // namespace
 
 std::vector<Illumination> share_by_levels(const ShareGuides& guides, Illumination illumination) {
-  std::vector<Illumination> kept{illumination};
-  Levels now{std::move(illumination), {}};
-  for (std::size_t h = 0; h < 2; ++h) {
-    const std::vector<Rgb>& a = now.light.replicate[2 * h];
-    const std::vector<Rgb>& b = now.light.replicate[2 * h + 1];
-    now.guide[h].resize(a.size());
-    for (std::size_t i = 0; i < a.size(); ++i) now.guide[h][i] = (a[i] + b[i]) * 0.5f;
-  }
+  Levels now = pack(illumination);
+  std::vector<Illumination> kept{std::move(illumination)};
   Levels next = now;
   for (int level = 0; level < kLevels; ++level) {
     const Level pass(guides, now, 1 << level);
     for_rows(guides, [&](int x, int y) { pass.pixel(x, y, next); });
     std::swap(now, next);
-    if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(now.light);
+    if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(unpack(now));
   }
   return kept;
 }

@@ -48,6 +48,9 @@ struct RenderOptions {
   int height = 480;
   std::array<double, 4> crop{0.0, 0.0, 1.0, 1.0};  ///< x0, y0, x1, y1 as shares of the image
   int samples = 64;  ///< camera samples per pixel; with an error asked for the most of a pixel
+  /// Without an error asked for: `samples` is the mean, and pixels get them where they lower the
+  /// error of the picture most.
+  bool spread = false;
   /// RMS of the picture's relative error (trace/compare.h) to reach, per pixel and after averaging
   /// 8x8 pixels, by more samples where they lower it most; 0: not asked for. With both zero every
   /// pixel gets `samples`.
@@ -66,6 +69,10 @@ struct RenderOptions {
   /// State to go on from, of the same scene, basis, camera and options (samples, errors and time
   /// limit apart); null: from the beginning. Method::Path only.
   const std::vector<char>* state = nullptr;
+  /// Shown the picture so far between passes over the image, at most every preview_seconds; empty:
+  /// none is made. Changes nothing of the result.
+  std::function<void(const scene::Image&)> preview;
+  double preview_seconds = 2.0;
 };
 
 struct RenderResult {

@@ -13,6 +13,7 @@
 #endif
 
 #include "material/error.h"
+#include "ray_clock.h"
 
 namespace atrium::scene {
 namespace {
@@ -99,6 +100,7 @@ struct RayQuery::Impl {
   std::vector<RTCScene> shared;  // by mesh, null unless instanced
   std::uint32_t present = 0;     // union of all masks
   ssize_t bytes = 0;
+  RayClock clock;
 
   ~Impl() {
     for (const RTCScene s : shared)
@@ -202,11 +204,11 @@ std::optional<Hit> RayQuery::closest(const Ray& ray, Counters& counters, Counter
     ++counters[Counter::RaysRefused];
     return std::nullopt;
   }
-  ++counters[kind];
+  const std::uint64_t number = ++counters[kind];
   RTCRayHit h;
   fill(h, ray, mask);
   Context context;
-  trace_closest(impl_->top, context, &h);
+  impl_->clock.time(number, kind, 1, [&] { trace_closest(impl_->top, context, &h); });
   if (h.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return impl_->hit(h);
 }
@@ -226,7 +228,8 @@ void RayQuery::closest(std::span<const Ray> rays, std::span<Hit> hits, Counters&
       fill(h[i], fine ? rays[first + i] : Ray{Vec3f::Zero(), Vec3f::UnitX(), 1.0f, 0.0f}, mask);
       refused += fine ? 0U : 1U;
     }
-    trace_closest(impl_->top, context, h.data(), n);
+    impl_->clock.time(counters[kind] / kBatch, kind, n,
+                      [&] { trace_closest(impl_->top, context, h.data(), n); });
     for (std::size_t i = 0; i < n; ++i)
       hits[first + i] = h[i].hit.geomID == RTC_INVALID_GEOMETRY_ID ? Hit::none() : impl_->hit(h[i]);
     counters[Counter::RaysRefused] += refused;
@@ -240,16 +243,17 @@ bool RayQuery::occluded(const Ray& ray, Counters& counters, Counter kind,
     ++counters[Counter::RaysRefused];
     return false;
   }
-  ++counters[kind];
+  const std::uint64_t number = ++counters[kind];
   RTCRay r;
   fill(r, ray, mask);
   Context context;
-  trace_any(impl_->top, context, &r);
+  impl_->clock.time(number, kind, 1, [&] { trace_any(impl_->top, context, &r); });
   return r.tfar < 0.0f;
 }
 
 const Scene& RayQuery::scene() const { return *impl_->scene; }
 bool RayQuery::has(std::uint32_t mask) const { return (impl_->present & mask) != 0; }
+RayTiming RayQuery::timing() const { return impl_->clock.timing(); }
 std::size_t RayQuery::memory_bytes() const {
   return static_cast<std::size_t>(
       std::max<ssize_t>(0, __atomic_load_n(&impl_->bytes, __ATOMIC_RELAXED)));

@@ -1,6 +1,21 @@
 #include "scene/shading.h"
 
 namespace atrium::scene {
+namespace {
+
+/// Reflectance of a material that is nothing but a diffuse reflector; nullopt: it is more.
+template <int N>
+std::optional<Spectrum<N>> matte_part(const material::ResolvedMaterial<N>& m) {
+  if (m.source->medium == material::Material::Medium::Solid) return std::nullopt;
+  const auto one = Spectrum<N>::one();
+  const material::Bsdf<N> front(m, true, one, one, 1.0f), back(m, false, one, one, 1.0f);
+  if (front.coupled() || front.events() != material::kDiffuseReflection ||
+      back.events() != front.events())
+    return std::nullopt;
+  return front.diffuse_reflectance(Vec3f::UnitZ());
+}
+
+}  // namespace
 
 template <int N>
 Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis, Weights weights)
@@ -19,6 +34,7 @@ Shading<N>::Shading(const RayQuery& query, const material::SpectralBasis& basis,
   materials_.reserve(sources.size());
   for (const material::Material& m : sources)
     materials_.push_back(material::resolve_material<N>(m, basis));
+  for (const material::ResolvedMaterial<N>& m : materials_) matte_.push_back(matte_part(m));
 }
 
 template <int N>
@@ -117,18 +133,26 @@ material::PaperSurface<N> Shading<N>::paper_surface(const Interaction<N>& surfac
 }
 
 template <int N>
+Spectrum<N> Shading<N>::body_factor(const SurfacePoint& point) const {
+  const material::TextureSlot& slot = scene().materials[point.material.value].body_texture;
+  Spectrum<N> f = Spectrum<N>::one();
+  if (slot.texture.valid())
+    f = basis_.template from_rgb<N>(
+        scene().textures[slot.texture.value].rgb(slot.transform(point.uv)));
+  if (!point.color.isOnes(0.0f))
+    f *= basis_.template from_rgb<N>(make_rgb(point.color.x(), point.color.y(), point.color.z()));
+  return f;
+}
+
+template <int N>
 typename Shading<N>::Factors Shading<N>::factors(const SurfacePoint& point) const {
   const material::Material& m = scene().materials[point.material.value];
   const auto& textures = scene().textures;
-  const auto color_of = [&](const material::TextureSlot& slot) {
-    return basis_.template from_rgb<N>(textures[slot.texture.value].rgb(slot.transform(point.uv)));
-  };
   Factors f;
-  if (m.body_texture.texture.valid()) f.body = color_of(m.body_texture);
-  if (!point.color.isOnes(0.0f))
-    f.body *=
-        basis_.template from_rgb<N>(make_rgb(point.color.x(), point.color.y(), point.color.z()));
-  if (m.reflectance_texture.texture.valid()) f.reflectance = color_of(m.reflectance_texture);
+  f.body = body_factor(point);
+  if (const material::TextureSlot& slot = m.reflectance_texture; slot.texture.valid())
+    f.reflectance =
+        basis_.template from_rgb<N>(textures[slot.texture.value].rgb(slot.transform(point.uv)));
   if (m.roughness_texture.texture.valid())
     f.roughness = textures[m.roughness_texture.texture.value].channel(
         m.roughness_texture.transform(point.uv), m.roughness_texture.channel);

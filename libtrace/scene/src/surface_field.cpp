@@ -255,29 +255,42 @@ float SurfaceField::element_size(std::uint32_t element) const {
   return std::ldexp(cell_size, -element_level[element]);
 }
 
-SurfaceField::Stencil SurfaceField::stencil(const Scene& scene, ObjectId object,
-                                            std::uint32_t triangle, const Vec3f& position,
-                                            Side side) const {
+SurfaceField::Spot SurfaceField::spot(const Scene& scene, ObjectId object, std::uint32_t triangle,
+                                      const Vec3f& position) const {
+  Spot s;
+  s.facet = facet_at(scene, object, triangle, position);
+  if (s.facet == kNone) return s;
+  const GridPlace p = place(facets[s.facet], position);
+  s.element = nearest_element(*this, p);
+  s.x = p.x;
+  s.y = p.y;
+  return s;
+}
+
+SurfaceField::Stencil SurfaceField::stencil(const Spot& spot, Side side) const {
   Stencil s;
-  const GridPlace p = place(*this, scene, object, triangle, position);
-  if (p.facet == nullptr) return s;
-  const std::uint32_t here = nearest_element(*this, p);
-  if (here == kNone) return s;
-  const int level = element_level[here];
-  const float scale = std::ldexp(1.0f, level);
-  s = stencil(*p.facet, level, p.x * scale, p.y * scale, side);
-  if (s.count == 0) StencilMaker(*this, *p.facet, side, s).add(here);
+  if (spot.element == kNone) return s;
+  const int level = element_level[spot.element];
+  const auto scale = static_cast<float>(1U << static_cast<unsigned>(level));
+  const Facet& facet = facets[spot.facet];
+  fill(s, facet, level, spot.x * scale, spot.y * scale, side);
+  if (s.count == 0) StencilMaker(*this, facet, side, s).add(spot.element);
   return s;
 }
 
 SurfaceField::Stencil SurfaceField::stencil(const Facet& facet, int level, float x, float y,
                                             Side side) const {
   Stencil s;
-  if (!StencilMaker(*this, facet, side, s).add_block(level, x, y, 1.0f)) return s;
+  fill(s, facet, level, x, y, side);
+  return s;
+}
+
+void SurfaceField::fill(Stencil& s, const Facet& facet, int level, float x, float y,
+                        Side side) const {
+  if (!StencilMaker(*this, facet, side, s).add_block(level, x, y, 1.0f)) return;
   float sum = 0.0f;
   for (int i = 0; i < s.count; ++i) sum += s.weight[i];
   for (int i = 0; i < s.count; ++i) s.weight[i] /= sum;
-  return s;
 }
 
 }  // namespace atrium::scene

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "scene/counters.h"
+#include "scene/ray_timing.h"
 #include "scene/scene.h"
 
 namespace atrium::scene {
@@ -68,6 +69,8 @@ class RayQuery {
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] bool has(std::uint32_t mask) const;  ///< is there geometry of one of these classes?
   [[nodiscard]] std::size_t memory_bytes() const;
+  /// Of all rays so far.
+  [[nodiscard]] RayTiming timing() const;
 
  private:
   struct Impl;

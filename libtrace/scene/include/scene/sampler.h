@@ -44,7 +44,11 @@ class Sampler {
     draw(keys(key_, dimension_++), index_, u.x(), u.y());
     return u;
   }
-  [[nodiscard]] float next_1d() { return next_2d().x(); }
+  /// The first number of such a pair.
+  [[nodiscard]] float next_1d() {
+    const Keys k = keys(key_, dimension_++);
+    return to_unit(reverse(scramble(shuffled(k, index_), k.x)));
+  }
 
   /// Dimension pairs 0 and 1 of samples first_index .. first_index + count - 1 of a stream, as
   /// Sampler has them, many at a time. \param u  room for `count` numbers of each of the four
@@ -60,8 +64,11 @@ class Sampler {
     const std::uint32_t k = hash_combine(key, dimension);
     return {k, hash32(k ^ 0x68bc21ebU), hash32(k ^ 0x02e5be93U)};
   }
+  static constexpr std::uint32_t shuffled(const Keys& k, std::uint32_t index) {
+    return reverse(scramble(reverse(index), k.shuffle));
+  }
   static constexpr void draw(const Keys& k, std::uint32_t index, float& x, float& y) {
-    const std::uint32_t i = reverse(scramble(reverse(index), k.shuffle));
+    const std::uint32_t i = shuffled(k, index);
     x = to_unit(reverse(scramble(i, k.x)));
     y = to_unit(reverse(scramble(pascal(i), k.y)));
   }

@@ -59,6 +59,12 @@ class Shading {
                     Counter kind) const;
   /// \param wo  unit, away from the surface (minus the ray's direction).
   [[nodiscard]] Interaction<N> interact(const SurfacePoint& point, const Vec3f& wo) const;
+  /// Does a material reflect diffusely and nothing else, on both sides alike?
+  [[nodiscard]] bool is_matte(MaterialId id) const { return matte_[id.value].has_value(); }
+  /// Reflectance of such a surface at a point; radiance is that times irradiance over pi.
+  [[nodiscard]] Spectrum<N> matte_reflectance(const SurfacePoint& point) const {
+    return *matte_[point.material.value] * body_factor(point);
+  }
   /// The paper's constants of the same surface.
   [[nodiscard]] material::PaperSurface<N> paper_surface(const Interaction<N>& surface) const;
   /// Share of light that goes straight along the ray: 0 behind opaque things and solids, the
@@ -84,6 +90,7 @@ class Shading {
   bool has_medium_;
   std::vector<material::Material> sources_;  // what materials_ point to, for Weights::Paper
   std::vector<material::ResolvedMaterial<N>> materials_;
+  std::vector<std::optional<Spectrum<N>>> matte_;  // by material: reflectance before textures
 
   /// What textures and vertex colours multiply at a point.
   struct Factors {
@@ -92,6 +99,7 @@ class Shading {
     float roughness = 1.0f;
   };
   [[nodiscard]] Factors factors(const SurfacePoint& point) const;
+  [[nodiscard]] Spectrum<N> body_factor(const SurfacePoint& point) const;
   [[nodiscard]] bool cut_out(const SurfacePoint& point) const;
 };
 

@@ -143,10 +143,31 @@ struct SurfaceField {
     Slope slope[kSlopes];
   };
   [[nodiscard]] Stencil stencil(const Scene& scene, ObjectId object, std::uint32_t triangle,
-                                const Vec3f& position, Side side) const;
+                                const Vec3f& position, Side side) const {
+    return stencil(spot(scene, object, triangle, position), side);
+  }
+  /// Where a point lies: found once, of use for its element, its stencils, both sides.
+  struct Spot {
+    std::uint32_t facet = kNone;
+    std::uint32_t element = kNone;  ///< the rest means nothing if this is kNone
+    float x = 0.0f, y = 0.0f;       ///< in the facet's grid, in cells of level 0
+  };
+  [[nodiscard]] Spot spot(const Scene& scene, ObjectId object, std::uint32_t triangle,
+                          const Vec3f& position) const;
+  [[nodiscard]] Stencil stencil(const Spot& spot, Side side) const;
   /// The same at a place of a facet's grid, in cells of a level, interpolated at that level.
   [[nodiscard]] Stencil stencil(const Facet& facet, int level, float x, float y, Side side) const;
 
+  /// An element's own value in an array (size as below); 0 if the array is empty.
+  template <int N>
+  [[nodiscard]] Spectrum<N> value(const std::vector<float>& array, std::uint32_t element,
+                                  Side side) const {
+    Spectrum<N> r;
+    if (array.empty()) return r;
+    const float* p = &array[(std::size_t{element} * 2 + static_cast<std::size_t>(side)) * N];
+    for (int k = 0; k < N; ++k) r[k] = p[k];
+    return r;
+  }
   /// Interpolated value of one array (size element_count * 2 * N), at least 0; 0 where nothing is
   /// known.
   template <int N>
@@ -174,6 +195,8 @@ struct SurfaceField {
   }
 
  private:
+  /// What stencil() returns, into an empty one.
+  void fill(Stencil& s, const Facet& facet, int level, float x, float y, Side side) const;
   /// Mean of an array over the valid elements below a node; 0 if there are none.
   template <int N>
   [[nodiscard]] Spectrum<N> mean(const std::vector<float>& array, std::uint32_t node,
