@@ -180,8 +180,7 @@ class ViewTracer {
         const std::size_t count = std::min(kTilesAtOnce, tiles_.size() - first);
         scene::parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i)
-            trace_tile(tiles_[first + i], samples, kSamplesAtOnce, work[i], film,
-                       counters_[first + i]);
+            trace_tile(first + i, samples, kSamplesAtOnce, work[i], film, counters_[first + i]);
         });
         for (std::size_t i = 0; i < count; ++i) {
           film.add_splats(work[i].splats, work[i].paths);

@@ -87,7 +87,7 @@ class Rounds {
     const Errors now = develop();
     plan_from(now);
     samples_ = allot_samples(plan_, {.goal = 0.0, .growth = 1.0 / first, .most = kMostOfPixel});
-    ++result_.rounds;
+    ++state_.rounds;
     (void)pass_(samples_, {first, 1.0, remark_of(now, options_)});
   }
 
