@@ -1,6 +1,7 @@
 #include <numbers>
 
 #include "integrator.h"
+#include "scene/roulette.h"
 
 namespace atrium::trace {
 
@@ -102,10 +103,11 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
 }
 
 /// A specular step of a path: direction, throughput and the vertex for emission beyond it.
+/// `scattered` counts those that are no straight passages through panes.
 template <int N>
-bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth,
-                   scene::Ray& ray, Spectrum<N>& beta, ScatterVertex& vertex, Event& event,
-                   scene::Sampler& sampler) {
+bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth, int& scattered,
+                   scene::MediumStack& media, scene::Ray& ray, Spectrum<N>& beta,
+                   ScatterVertex& vertex, Event& event, scene::Sampler& sampler) {
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
   const auto s = surface.bsdf.sample(wo, u_choice, u, kSpecularEvents);
@@ -113,10 +115,13 @@ bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int de
   const Vec3f wi = surface.to_world(s->wi);
   if ((s->wi.z() > 0.0f) != (wi.dot(surface.ng) > 0.0f)) return false;
   beta *= s->weight;
-  if (s->event != kPaneStraight)
+  pass_surface(media, surface, s->event);
+  if (s->event != kPaneStraight) {
+    ++scattered;
     vertex = {!s->dirac(), surface.point.position, light_normal(surface), s->pdf};
+  }
   if (depth >= kRouletteDepth) {
-    const float survive = std::min(0.97f, beta.max());
+    const float survive = std::min(scene::long_path_survival(scattered), beta.max());
     if (!(sampler.next_1d() < survive)) return false;
     beta /= survive;
   }
@@ -126,7 +131,8 @@ bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int de
 }
 
 /// One ray from a diffuse point into its hemisphere (or through the sheet): radiance that arrives,
-/// times f cos / pdf. `straight` gets the share that comes directly from a light.
+/// times f cos / pdf. `straight` gets the share that comes directly from a light. `media`: the
+/// bodies that the point is in.
 template <int N>
 struct Gathered {
   Spectrum<N> straight, indirect;
@@ -134,7 +140,7 @@ struct Gathered {
 };
 template <int N>
 Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const Vec3f& wo_from,
-                   scene::Sampler& sampler, scene::Counters& counters) {
+                   scene::MediumStack media, scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   Gathered<N> g;
   const float u_choice = sampler.next_1d();
@@ -147,22 +153,22 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
   ScatterVertex vertex{true, from.point.position, light_normal(from), s->pdf};
   Spectrum<N> beta = s->weight;
   scene::Ray ray{scene::offset_origin(from.point, wi), wi};
-  bool straight = true;  // nothing but panes passed so far
+  int scattered = 0;  // specular events, straight panes apart
   Counter kind = Counter::RaysGather;
 
-  for (int depth = 0; depth < view.options.max_specular_depth; ++depth) {
+  for (int depth = 0;; ++depth) {
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
-      if (straight)
+      if (scattered == 0)
         g.straight +=
             beta * sky_radiance(shading, ray) * environment_weight(shading, vertex, ray.direction);
       break;
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
-    beta *= segment_transmittance(shading, surface, ray, distance);
-    if (straight) {
+    beta *= segment_transmittance(shading, media, surface, ray, distance);
+    if (scattered == 0) {
       const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
       if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
     }
@@ -177,8 +183,8 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from, const
       g.indirect += beta * (d.reflected + d.transmitted);
     }
     Event event{};
-    if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
-    straight &= event == kPaneStraight;
+    if (!specular_step(surface, wo, depth, scattered, media, ray, beta, vertex, event, sampler))
+      break;
     kind = Counter::RaysSpecular;
   }
   return g;
@@ -195,6 +201,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
   PixelSample<N> out;
   Spectrum<N> beta = Spectrum<N>::one();
   ScatterVertex vertex;
+  scene::MediumStack media;
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
   Event first{};      // what the first surface did
@@ -210,7 +217,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
     out[depth == 0 ? Term::Emission : term_of(first, highlight)] += beta * radiance;
   };
 
-  for (int depth = 0; depth < view.options.max_specular_depth; ++depth) {
+  for (int depth = 0;; ++depth) {
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
@@ -221,7 +228,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
-    beta *= segment_transmittance(shading, surface, ray, distance);
+    beta *= segment_transmittance(shading, media, surface, ray, distance);
     if (depth == 0) {
       out.depth = distance;
       out.normal = surface.frame.z;
@@ -253,7 +260,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
       if (depth == 0 && gathers && view.options.share_samples)
         out.body_indirect -= field_radiance(view, surface, wo, {false, false, true}).reflected;
       if (gathers) {
-        const Gathered<N> g = gather(view, surface, wo, sampler, counters);
+        const Gathered<N> g = gather(view, surface, wo, media, sampler, counters);
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);
         if (depth == 0 && g.reflected) {
@@ -262,9 +269,9 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray,
         }
       }
     }
-    if (!specular_step(surface, wo, depth, ray, beta, vertex, last, sampler)) break;
+    if (!specular_step(surface, wo, depth, scattered, media, ray, beta, vertex, last, sampler))
+      break;
     if (depth == 0) first = last;
-    if (last != kPaneStraight) ++scattered;
     kind = Counter::RaysSpecular;
   }
   return out;
