@@ -8,8 +8,9 @@
 namespace atrium::trace {
 namespace {
 
-constexpr int kLevels = 5;       // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
-constexpr float kErrors = 3.0f;  // standard errors of a difference that noise may explain
+constexpr int kLevels = 5;          // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
+constexpr float kNothing = 104.0f;  // exp(-104) is no float
+constexpr float kErrors = 3.0f;     // standard errors of a difference that noise may explain
 constexpr float kNormalPower = 48.0f;
 constexpr float kPlane = 0.1f;  // tangent of the slope that counts as the same surface
 constexpr std::array<float, 3> kSpline{0.375f, 0.25f, 0.0625f};  // B3
@@ -123,7 +124,8 @@ class Level {
     const float allowed =
         sum > 0.0f ? kErrors * kErrors * 2.0f * noise_[p] * noise_[q] / sum : 0.0f;
     if (!(allowed > 0.0f)) return difference == 0.0f ? 1.0f : 0.0f;
-    return std::exp(-difference * difference / allowed);
+    const float square = difference * difference;
+    return square < kNothing * allowed ? std::exp(-square / allowed) : 0.0f;
   }
 
   const ShareGuides& g_;
