@@ -49,7 +49,8 @@ bool is_export(const std::string& file) {
 void check_export(const std::string& file) {
   if (scene::is_mesh_ending(file) && !scene::mesh_io_available())
     throw RuntimeFailure(file +
-                         ": mesh files are not part of this build (ATRIUM_WITH_VTK was off)");
+                         ": mesh files cannot be written: atrium_mesh_io.so is missing, or "
+                         "not part of this build (ATRIUM_WITH_VTK was off)");
   if (is_page(file) && !kWeb)
     throw RuntimeFailure(file +
                          ": web pages are not part of this build (ATRIUM_WITH_WEB was off, or npm "
@@ -68,7 +69,9 @@ void check_export_options(const ExportSettings& settings, const std::vector<std:
   if (settings.lightmap > 0 && settings.lightmap < 16)
     throw Error("--lightmap " + std::to_string(settings.lightmap) + ": must be 0, or 16 to 16384");
   if (settings.lightmap > 0 && !scene::image_io_available())
-    throw RuntimeFailure("--lightmap: pictures are not part of this build (no OpenImageIO)");
+    throw RuntimeFailure(
+        "--lightmap: pictures cannot be written: atrium_image_io.so is "
+        "missing, or not part of this build (no OpenImageIO)");
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY

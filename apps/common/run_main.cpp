@@ -33,7 +33,10 @@ int run(const std::string& program, const std::function<int()>& body) {
 }  // namespace
 
 void run_main(const std::string& program, const std::function<int()>& body) {
-  const int code = run(program, body);
+  int code = run(program, body);
+  // A table that did not get to its reader (full disk, closed pipe) is no success.
+  const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (code == 0 && !is_written) code = fail(program, 1, "standard output: cannot be written");
   std::fflush(nullptr);
   std::_Exit(code);
 }

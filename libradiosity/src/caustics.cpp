@@ -142,7 +142,9 @@ Photons<N> trace_photons(const Problem<N>& problem, std::uint64_t count, Work& w
       smooth_photons(problem, arrived[g], result.caustic[g]);
   const double mean =
       lane_mean(result.escaped) + lane_mean(result.in_medium) + lane_mean(result.absorbed);
-  result.variance = std::max(0.0, squares - mean * mean) / n;
+  // What none of them met may still happen to one of as many: light that grazes a floor.
+  const double unseen = mean / n;
+  result.variance = std::max(0.0, squares - mean * mean) / n + unseen * unseen;
   return result;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <limits>
 
 #include "problem.h"
+#include "scene/medium_stack.h"
+#include "scene/roulette.h"
 
 namespace atrium::radiosity {
 
@@ -14,35 +17,6 @@ struct PathEnd {
   Vec3f direction = Vec3f::Zero();  ///< ... in this direction
   bool specular = false;            ///< the path met more than straight passages through panes
   bool inside_solid = false;  ///< the first surface was the inner face of an unlit closed body
-};
-
-/// Extinction of the body that a path is in; bodies may be nested.
-template <int N>
-class MediumStack {
- public:
-  [[nodiscard]] bool empty() const { return size_ == 0; }
-  [[nodiscard]] const Spectrum<N>& extinction() const { return extinction_[size_ - 1]; }
-  void enter(scene::MaterialId material, const Spectrum<N>& extinction) {
-    if (size_ == material_.size()) return;  // deeper nests absorb like the outer body
-    material_[size_] = material;
-    extinction_[size_++] = extinction;
-  }
-  void leave(scene::MaterialId material) {
-    for (std::size_t i = size_; i-- > 0;)
-      if (material_[i] == material) {
-        for (std::size_t k = i; k + 1 < size_; ++k) {
-          material_[k] = material_[k + 1];
-          extinction_[k] = extinction_[k + 1];
-        }
-        --size_;
-        return;
-      }
-  }
-
- private:
-  std::size_t size_ = 0;
-  std::array<scene::MaterialId, 4> material_;
-  std::array<Spectrum<N>, 4> extinction_;
 };
 
 /// Where light meets a surface that scatters it diffusely.
@@ -134,12 +108,13 @@ PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit, Spe
                        scene::Sampler& sampler, material::Transport transport, scene::Counter kind,
                        scene::Counters& counters, OnDiffuse&& on_diffuse,
                        OnSurface&& on_surface = {}) {
-  constexpr int kMaxDepth = 256;  // only total reflection without loss gets near
   const scene::Shading<N>& shading = problem.shading;
   PathEnd<N> end;
-  MediumStack<N> media;
+  scene::MediumStack media;
   bool& specular = end.specular;
-  for (int depth = 0; depth < kMaxDepth; ++depth) {
+  const float full = std::max(weight.max(), std::numeric_limits<float>::min());
+  int scattered = 0;  // straight passages through panes apart
+  for (int depth = 0;; ++depth) {
     if (depth > 0) {
       const auto next = shading.closest_hit(ray, counters, kind);
       if (!next) {
@@ -149,7 +124,7 @@ PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit, Spe
       hit = *next;
     }
     if (!media.empty())
-      weight *= exp_minus(media.extinction(), hit.t);
+      weight *= exp_minus(shading.material(media.current()).extinction, hit.t);
     else if (shading.has_medium())
       pass_medium(shading.through_medium(ray, hit.t), weight, end);
     if (problem.sides.plain[hit.object.value] != 0) {
@@ -178,23 +153,24 @@ PathEnd<N> follow_from(const World& problem, scene::Ray ray, scene::Hit hit, Spe
         at.bsdf.sample(wo, choice.x(), sampler.next_2d(), material::kSpecularEvents, transport);
     if (!s) return end;
     weight *= s->weight;
-    const float survival = std::min(1.0f, 4.0f * weight.max());
+    if (s->event != material::kPaneStraight) ++scattered;
+    specular = scattered > 0;
+    const float survival =
+        std::min(scene::long_path_survival(scattered), 4.0f * weight.max() / full);
     if (!(choice.y() < survival)) return end;
     weight *= 1.0f / survival;
-    if (s->event != material::kPaneStraight) specular = true;
 
     const Vec3f direction = at.to_world(s->wi);
     // Shading normals can send a reflection through the surface or a refraction back: no such path.
     if ((direction.dot(at.ng) > 0.0f) != (s->wi.z() > 0.0f)) return end;
     if (s->event == material::kRefraction || s->event == material::kLobeTransmission) {
       if (front)
-        media.enter(point.material, shading.material(point.material).extinction);
+        media.enter(point.material);
       else
         media.leave(point.material);
     }
     ray = {scene::offset_origin(point, direction), direction};
   }
-  return end;
 }
 
 /// follow_from() with the first surface to be found.

@@ -83,7 +83,7 @@ void look_from_all(std::span<const SideIndex> members, const Rows<N>& rows,
   keep_brightest(seen.brightest);
   double kept = 0.0;
   for (const Target& t : seen.brightest) kept += static_cast<double>(t.square);
-  seen.rest = seen.square - kept;
+  seen.rest = std::max(0.0, seen.square - kept);  // sums in another order: not exactly 0
 }
 
 /// Adds the targets' squares to the cells of the hemisphere over a side where they lie.
@@ -109,6 +109,7 @@ void project(const Problem<N>& problem, SideIndex i, const std::vector<Target>& 
 /// Variance that a density leaves, as a share of what uniform numbers have: the square of the mean
 /// is no noise. \param moment  FittedDensity::moment.
 double gain_of(const Seen& seen, double moment) {
+  if (!(seen.square > 0.0)) return 1.0;
   const double variance = std::max(seen.square - seen.mean * seen.mean, 1e-3 * seen.square);
   return 1.0 - (1.0 - moment) * seen.square / variance;
 }

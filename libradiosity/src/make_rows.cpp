@@ -108,6 +108,10 @@ void guide_rays(RowState<N>& s) {
     const SideValues<N> b = radiosity_read(s, g);
     for (const SideIndex i : s.problem.sides.active) light[i] += b[i].mean();
   }
+  // Squares of what is left are numbers whatever the unit of light.
+  const float most = *std::max_element(light.begin(), light.end());
+  if (most > 0.0f)
+    for (float& b : light) b /= most;
   s.ray_guide = HemisphereGuide(s.problem, s.regions, s.rows, light);
 }
 

@@ -147,6 +147,7 @@ class MatrixSolver {
   /// B = rho (S + F B) + tau (S + F B)_other; I = F B.
   void solve_lane(int lane) {
     const auto n = static_cast<Eigen::Index>(size_);
+    if (n == 0) return;  // nothing reflects diffusely
     Matrix f(n, n);
     for (std::size_t i = 0; i < size_; ++i)
       f.row(static_cast<Eigen::Index>(i)) =

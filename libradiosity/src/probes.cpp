@@ -5,6 +5,7 @@
 
 #include "follow.h"
 #include "hemisphere.h"
+#include "scene/roulette.h"
 #include "scene/segment.h"
 
 namespace atrium::radiosity {
@@ -131,47 +132,47 @@ class Walk {
   struct Flight {
     scene::Ray ray;
     Spectrum<N> weight;
-    float cosine;           ///< at the vertex
-    bool specular = false;  ///< it met more than straight passages through panes
-    MediumStack<N> media = {};
+    float cosine;       ///< at the vertex
+    int scattered = 0;  ///< what it met besides straight passages through panes
+    scene::MediumStack media = {};
   };
 
   /// Emission that a ray from v met. \param light_pdf  with which a light sample finds it from v.
   void add_emission(const Vertex& v, const Flight& f, float light_pdf,
                     const Spectrum<N>& radiance) {
-    if (f.specular && caustics_ != nullptr) return;
+    if (f.scattered > 0 && caustics_ != nullptr) return;
     const float chance = f.cosine * kInversePi;
-    const float share = f.specular ? 1.0f : v.share * chance / (chance + light_pdf);
+    const float share = f.scattered > 0 ? 1.0f : v.share * chance / (chance + light_pdf);
     sum_ += f.weight * radiance * (share * std::numbers::pi_v<float>);
   }
   void add_sky(const Vertex& v, const Flight& f) {
     const Spectrum<N> radiance = shading_.lights().environment(f.ray.direction);
     if (radiance.is_zero()) return;
-    const float pdf = f.specular ? 0.0f
-                                 : shading_.lights().pdf_environment(v.at.point.position, v.at.ng,
-                                                                     f.ray.direction);
+    const float pdf = f.scattered > 0 ? 0.0f
+                                      : shading_.lights().pdf_environment(v.at.point.position,
+                                                                          v.at.ng, f.ray.direction);
     add_emission(v, f, pdf, radiance);
   }
   void add_lamp(const Vertex& v, const Flight& f, const SurfacePoint& hit) {
     const Spectrum<N> radiance = shading_.lights().emitted(hit, -f.ray.direction);
     if (radiance.is_zero()) return;
     const Vec3f& from = v.at.point.position;
-    const float pdf =
-        f.specular ? 0.0f : shading_.lights().pdf(from, v.at.ng, hit, (hit.position - from).norm());
+    const float pdf = f.scattered > 0
+                          ? 0.0f
+                          : shading_.lights().pdf(from, v.at.ng, hit, (hit.position - from).norm());
     add_emission(v, f, pdf, radiance);
   }
 
   /// Sends a ray and moves to one of the diffuse surfaces it meets. False: the walk is over.
   /// On purpose not follow(): an error there must not be an error of what judges it.
   bool advance(Vertex& v) {
-    constexpr int kMaxDepth = 256;
     const Vec3f local = sample_cosine_hemisphere(sampler_.next_2d());
     const Vec3f start = Frame(v.at.ng).to_world(local).normalized();
     Flight f{{scene::offset_origin(v.at.point, start), start},
              v.weight * v.body_weight(local.z()),
              local.z()};
     met_.clear();
-    for (int depth = 0; depth < kMaxDepth; ++depth) {
+    for (int depth = 0;; ++depth) {
       float distance = 0.0f;
       const auto hit = shading_.closest(f.ray, counters_, Counter::RaysProbe, &distance);
       if (!hit) {
@@ -179,8 +180,9 @@ class Walk {
         add_sky(v, f);
         break;
       }
-      f.weight *= f.media.empty() ? shading_.through_medium(f.ray, distance)
-                                  : exp_minus(f.media.extinction(), distance);
+      f.weight *= f.media.empty()
+                      ? shading_.through_medium(f.ray, distance)
+                      : exp_minus(shading_.material(f.media.current()).extinction, distance);
       const scene::Interaction<N> at = shading_.interact(*hit, -f.ray.direction);
       if (depth == 0 &&
           problem_.sides.inner[hit->object.value] == static_cast<std::uint8_t>(at.side))
@@ -190,7 +192,7 @@ class Walk {
       if (at.bsdf.has(material::kDiffuseEvents) &&
           is_outside(shading_, problem_.sides, hit->object, at.side))
         met_.push_back({at, f.weight * at.bsdf.diffuse_reflectance(wo),
-                        f.weight * at.bsdf.diffuse_transmittance(), f.specular});
+                        f.weight * at.bsdf.diffuse_transmittance(), f.scattered > 0});
       if (!at.bsdf.has(material::kSpecularEvents) || !pass(f, at, wo)) break;
     }
     return choose(v, start, local.z());
@@ -203,16 +205,16 @@ class Walk {
     const auto s = at.bsdf.sample(wo, choice, sampler_.next_2d(), material::kSpecularEvents);
     if (!s) return false;
     f.weight *= s->weight;
-    const float survival = std::min(1.0f, 4.0f * f.weight.max());
+    if (s->event != material::kPaneStraight) ++f.scattered;
+    const float survival = std::min(scene::long_path_survival(f.scattered), 4.0f * f.weight.max());
     if (!(roulette < survival)) return false;
     f.weight *= 1.0f / survival;
-    if (s->event != material::kPaneStraight) f.specular = true;
     const Vec3f direction = at.to_world(s->wi);
     if ((direction.dot(at.ng) > 0.0f) != (s->wi.z() > 0.0f)) return false;
     if (s->event == material::kRefraction || s->event == material::kLobeTransmission) {
       const scene::MaterialId material = at.point.material;
       if (at.side == Side::Front)
-        f.media.enter(material, shading_.material(material).extinction);
+        f.media.enter(material);
       else
         f.media.leave(material);
     }

@@ -24,13 +24,13 @@ struct SideSums {
   };
   std::vector<Group> groups;
   std::array<std::uint32_t, kReplicates> valid{};
-  float squares = 0.0f;  ///< of samples' lane means, all groups together
+  double squares = 0.0;  ///< of samples' lane means, all groups together
 
   explicit SideSums(std::size_t group_count) : groups(group_count) {}
   void clear() {
     groups.assign(groups.size(), Group{});
     valid.fill(0);
-    squares = 0.0f;
+    squares = 0.0;
   }
   void add(std::size_t group, int replicate, const Spectrum<N>& plain, const Spectrum<N>& body) {
     Group& g = groups[group];
@@ -41,7 +41,8 @@ struct SideSums {
   }
   /// After all parts of a sample were added.
   void end_sample() {
-    squares += sample_ * sample_;
+    const auto sample = static_cast<double>(sample_);  // squares of floats are numbers in double
+    squares += sample * sample;
     sample_ = 0.0f;
   }
 
@@ -68,7 +69,7 @@ class Tally {
         replicate_(sides * groups),
         valid_(sides),
         drawn_(sides, 0),
-        squares_(sides, 0.0f) {}
+        squares_(sides, 0.0) {}
 
   [[nodiscard]] std::size_t groups() const { return groups_; }
   /// Number of the round that is being drawn.
@@ -152,7 +153,7 @@ class Tally {
   void forget(SideIndex i) {
     drawn_[i] = 0;
     valid_[i].fill(0);
-    squares_[i] = 0.0f;
+    squares_[i] = 0.0;
     for (std::size_t g = 0; g < groups_; ++g) {
       plain_[g * sides_ + i] = {};
       if (!body_.empty()) body_[g * sides_ + i] = {};
@@ -200,7 +201,7 @@ class Tally {
                              : 0.0f;
       drawn_[i] = each;
       valid_[i].fill(each);
-      squares_[i] *= kept;
+      squares_[i] *= static_cast<double>(kept);
       for (std::size_t g = 0; g < groups_; ++g) {
         const std::size_t at = g * sides_ + i;
         const auto n = static_cast<float>(kReplicates * each);
@@ -273,7 +274,7 @@ class Tally {
     const double n = valid(i);
     if (n < 2.0) return 0.0;
     const double m = total(i);
-    return std::max(0.0, static_cast<double>(squares_[i]) / n - m * m) * n / (n - 1.0);
+    return std::max(0.0, squares_[i] / n - m * m) * n / (n - 1.0);
   }
 
   /// For both directions, see scene/archive.h.
@@ -320,7 +321,9 @@ class Tally {
   void count_shift(SideIndex i, float by) {
     float m = 0.0f;
     for (std::size_t g = 0; g < groups_; ++g) m += mean(i, g).mean();
-    squares_[i] = std::max(0.0f, squares_[i] + static_cast<float>(valid(i)) * by * (2.0f * m + by));
+    const auto shift = static_cast<double>(by);
+    squares_[i] =
+        std::max(0.0, squares_[i] + valid(i) * shift * (2.0 * static_cast<double>(m) + shift));
   }
   /// Of a ratio of sums over replicates (linearised), groups first .. last - 1.
   [[nodiscard]] double variance_now(SideIndex i, std::size_t first, std::size_t last) const {
@@ -392,7 +395,7 @@ class Tally {
   std::vector<std::array<float, kReplicates>> replicate_;
   std::vector<std::array<std::uint32_t, kReplicates>> valid_;
   std::vector<std::uint32_t> drawn_;
-  std::vector<float> squares_;                       ///< of all rounds
+  std::vector<double> squares_;                      ///< of all rounds
   std::vector<Spectrum<N>> past_plain_, past_body_;  ///< means of the rounds before
   std::vector<std::array<float, kReplicates>> past_replicate_;
   std::vector<float> past_variance_;  ///< of each group's, then of the sum of all

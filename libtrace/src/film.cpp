@@ -39,9 +39,12 @@ void Film::add_body(Body& body, const Pixel& pixel, std::size_t replicate,
                                          basis.to_rgb(sample.body_indirect)};
   const auto n = static_cast<float>(pixel.count);
   for (std::size_t part = 0; part < kParts; ++part) {
-    const float before = luminance(radiance[part]) - luminance(body.mean[part]);
+    const double before =
+        static_cast<double>(luminance(radiance[part]) - luminance(body.mean[part]));
     move_mean(body.mean[part], radiance[part], n);
-    body.m2[part] += before * (luminance(radiance[part]) - luminance(body.mean[part]));
+    const double after =
+        static_cast<double>(luminance(radiance[part]) - luminance(body.mean[part]));
+    body.m2[part] += before * after;
     move_mean(body.radiance[part][replicate], radiance[part],
               static_cast<float>(pixel.replicate_count[replicate]));
   }
@@ -117,50 +120,61 @@ ShareGuides Film::guides() const {
   return g;
 }
 
-Illumination Film::illumination(std::size_t part) const {
+// A power of two that brings the brightest pixel below 1: squares are numbers whatever the unit.
+float Film::light_unit() const {
+  double most = 0.0;
+  for (const Pixel& p : pixels_) most = std::max({most, p.mean[0], p.mean[1], p.mean[2]});
+  return most > 0.0 ? static_cast<float>(std::exp2(std::ceil(std::log2(most)))) : 1.0f;
+}
+
+Illumination Film::illumination(std::size_t part, float unit) const {
   Illumination light;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Body& body = bodies_[i];
     const bool used = usable(i);
     for (std::size_t r = 0; r < kReplicates; ++r)
-      light.replicate[r].push_back(
-          used ? Rgb::generate([&](int c) { return body.radiance[part][r][c] / body.albedo[c]; })
-               : Rgb::zero());
-    const float y = luminance(body.albedo);
-    const auto n = static_cast<float>(pixels_[i].count);
-    light.variance.push_back(used ? 2.0f * body.m2[part] / (n * (n - 1.0f) * y * y) : 0.0f);
+      light.replicate[r].push_back(used ? Rgb::generate([&](int c) {
+        return body.radiance[part][r][c] / unit / body.albedo[c];
+      })
+                                        : Rgb::zero());
+    const double y = static_cast<double>(luminance(body.albedo)) * static_cast<double>(unit);
+    const double n = pixels_[i].count;
+    light.variance.push_back(
+        used ? static_cast<float>(2.0 * body.m2[part] / (n * (n - 1.0) * y * y)) : 0.0f);
   }
   return light;
 }
 
-// What illumination that is wrong by 1 means for the error of the picture, by pixel.
-std::vector<Rgb> Film::share_weights() const {
+// What illumination that is wrong by one unit means for the error of the picture, by pixel.
+std::vector<Rgb> Film::share_weights(float unit) const {
   std::vector<double> y;
   for (const Pixel& p : pixels_)
     y.push_back(std::max(0.0, 0.2126 * p.mean[0] + 0.7152 * p.mean[1] + 0.0722 * p.mean[2]));
   const std::vector<double> scale = error_scales(width_, height_, y);
   std::vector<Rgb> weights(pixels_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i)
-    if (scale[i] > 0.0) weights[i] = bodies_[i].albedo / static_cast<float>(scale[i]);
+    if (scale[i] > 0.0)
+      weights[i] = bodies_[i].albedo * static_cast<float>(static_cast<double>(unit) / scale[i]);
   return weights;
 }
 
 void Film::share() {
   const ShareGuides where = guides();
-  const std::vector<Rgb> weights = share_weights();
+  const float unit = light_unit();
+  const std::vector<Rgb> weights = share_weights(unit);
   changes_.assign(pixels_.size(), {});
   for (std::size_t part = 0; part < kParts; ++part) {
-    const std::vector<Illumination> lights = share_by_levels(where, illumination(part));
+    const std::vector<Illumination> lights = share_by_levels(where, illumination(part, unit));
     const std::vector<std::uint8_t> choice = choose_shares(width_, height_, lights, weights);
     for (std::size_t i = 0; i < pixels_.size(); ++i)
-      if (choice[i] > 0 && usable(i)) take_shared(i, part, lights[choice[i]]);
+      if (choice[i] > 0 && usable(i)) take_shared(i, part, lights[choice[i]], unit);
   }
 }
 
-void Film::take_shared(std::size_t i, std::size_t part, const Illumination& light) {
+void Film::take_shared(std::size_t i, std::size_t part, const Illumination& light, float unit) {
   const Body& body = bodies_[i];
   for (std::size_t r = 0; r < kReplicates; ++r) {
-    const Rgb change = light.replicate[r][i] * body.albedo - body.radiance[part][r];
+    const Rgb change = light.replicate[r][i] * body.albedo * unit - body.radiance[part][r];
     changes_[i].replicate[r] += change;
     changes_[i].part[part] += change * (static_cast<float>(pixels_[i].replicate_count[r]) /
                                         static_cast<float>(pixels_[i].count));

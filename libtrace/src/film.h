@@ -74,7 +74,7 @@ class Film {
   /// Light from a surface's body by part and replicate, and what it needs to be shared.
   struct Body {
     std::array<std::array<Rgb, kReplicates>, kParts> radiance;
-    std::array<float, kParts> m2{};  // of luminance
+    std::array<double, kParts> m2{};  // of luminance
     std::array<Rgb, kParts> mean;
     Rgb albedo;
     Vec3f position = Vec3f::Zero();
@@ -90,10 +90,11 @@ class Film {
                        const PixelSample<N>& sample, const material::SpectralBasis& basis);
   [[nodiscard]] bool usable(std::size_t pixel) const;
   [[nodiscard]] ShareGuides guides() const;
-  [[nodiscard]] Illumination illumination(std::size_t part) const;
-  [[nodiscard]] std::vector<Rgb> share_weights() const;
+  [[nodiscard]] float light_unit() const;
+  [[nodiscard]] Illumination illumination(std::size_t part, float unit) const;
+  [[nodiscard]] std::vector<Rgb> share_weights(float unit) const;
   void share();
-  void take_shared(std::size_t pixel, std::size_t part, const Illumination& light);
+  void take_shared(std::size_t pixel, std::size_t part, const Illumination& light, float unit);
   [[nodiscard]] Rgb mean(std::size_t pixel) const;
   [[nodiscard]] Rgb term(std::size_t pixel, std::size_t term) const;
   [[nodiscard]] float replicate_factor(std::size_t pixel, std::size_t half) const;

@@ -2,6 +2,7 @@
 
 #include "gather_directions.h"
 #include "integrator.h"
+#include "scene/roulette.h"
 #include "scene/segment.h"
 
 namespace atrium::trace {
@@ -121,10 +122,11 @@ DirectLight<N> direct_light(const View<N>& view, const scene::Interaction<N>& su
 }
 
 /// A specular step of a path: direction, throughput and the vertex for emission beyond it.
+/// `scattered` counts those that are no straight passages through panes.
 template <int N>
-bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth,
-                   scene::Ray& ray, Spectrum<N>& beta, ScatterVertex& vertex, Event& event,
-                   scene::Sampler& sampler) {
+bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int depth, int& scattered,
+                   scene::MediumStack& media, scene::Ray& ray, Spectrum<N>& beta,
+                   ScatterVertex& vertex, Event& event, scene::Sampler& sampler) {
   if (!surface.bsdf.has(kSpecularEvents)) return false;
   const float u_choice = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
@@ -133,10 +135,13 @@ bool specular_step(const scene::Interaction<N>& surface, const Vec3f& wo, int de
   const Vec3f wi = surface.to_world(s->wi);
   if ((s->wi.z() > 0.0f) != (wi.dot(surface.ng) > 0.0f)) return false;
   beta *= s->weight;
-  if (s->event != kPaneStraight)
+  pass_surface(media, surface, s->event);
+  if (s->event != kPaneStraight) {
+    ++scattered;
     vertex = {!s->dirac(), surface.point.position, light_normal(surface), s->pdf};
+  }
   if (depth >= kRouletteDepth) {
-    const float survive = std::min(0.97f, beta.max());
+    const float survive = std::min(scene::long_path_survival(scattered), beta.max());
     if (!(sampler.next_1d() < survive)) return false;
     beta /= survive;
   }
@@ -244,7 +249,8 @@ float share_of_chance(const View<N>& view, const ScatterVertex& from,
 }
 
 /// One ray from a diffuse point into its hemisphere (or through the sheet): radiance that arrives,
-/// times f cos / pdf. `straight` gets the share that comes directly from a light.
+/// times f cos / pdf. `straight` gets the share that comes directly from a light. `media`: the
+/// bodies that the point is in.
 template <int N>
 struct Gathered {
   Spectrum<N> straight, indirect;
@@ -259,8 +265,8 @@ struct Gathered {
 };
 template <int N>
 Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
-                   const GatherDirections<N>& directions, GatherGuide& guide,
-                   scene::Sampler& sampler, scene::Counters& counters) {
+                   const GatherDirections<N>& directions, scene::MediumStack media,
+                   GatherGuide& guide, scene::Sampler& sampler, scene::Counters& counters) {
   const scene::Shading<N>& shading = view.shading;
   Gathered<N> g;
   const float u_choice = sampler.next_1d();
@@ -271,39 +277,41 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
   ScatterVertex vertex{true, from.point.position, light_normal(from), s->pdf};
   Spectrum<N> beta = s->weight;
   scene::Ray ray{scene::offset_origin(from.point, s->wi), s->wi};
-  bool straight = true;  // nothing but panes passed so far
+  const bool rivals = media.empty();  // bright surfaces are not sought from within bodies
+  int scattered = 0;                  // specular events, straight panes apart
   Counter kind = Counter::RaysGather;
 
-  for (int depth = 0; depth < view.options.max_specular_depth; ++depth) {
+  for (int depth = 0;; ++depth) {
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
-      if (straight)
+      if (scattered == 0)
         g.straight +=
             beta * sky_radiance(shading, ray) * environment_weight(shading, vertex, ray.direction);
       break;
     }
     const auto add_emission = [&] {
-      if (!straight) return;
+      if (scattered > 0) return;
       const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
       if (!emitted.is_zero()) g.straight += beta * emitted * emission_weight(shading, vertex, *hit);
     };
-    const Place<N> place(view, *hit, from.point.position, straight);
-    const float share = straight ? share_of_chance(view, vertex, *hit, ray.direction) : 1.0f;
+    const Place<N> place(view, *hit, from.point.position, scattered == 0);
+    const float share =
+        rivals && scattered == 0 ? share_of_chance(view, vertex, *hit, ray.direction) : 1.0f;
     if (!place.near && shading.is_matte(hit->material)) {  // where most rays end
-      beta *= shading.through_medium(ray, distance);
+      beta *= body_transmittance(shading, media, ray, distance);
       add_emission();
       g.take(matte_light(view, *hit, side_towards(*hit, ray.direction), place), beta * share);
       break;
     }
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
-    beta *= segment_transmittance(shading, surface, ray, distance);
+    beta *= segment_transmittance(shading, media, surface, ray, distance);
     add_emission();
     g.take(body_light(view, surface, wo, place, sampler, counters), beta * share);
     Event event{};
-    if (!specular_step(surface, wo, depth, ray, beta, vertex, event, sampler)) break;
-    straight &= event == kPaneStraight;
+    if (!specular_step(surface, wo, depth, scattered, media, ray, beta, vertex, event, sampler))
+      break;
     kind = Counter::RaysSpecular;
   }
   const float found = (g.straight + g.indirect).mean() * s->density;
@@ -358,6 +366,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
   PixelSample<N> out;
   Spectrum<N> beta = Spectrum<N>::one();
   ScatterVertex vertex;
+  scene::MediumStack media;
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
   Event first{};           // what the first surface did
@@ -381,7 +390,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
     out[depth == 0 ? Term::Emission : term_of(first, highlight)] += beta * radiance;
   };
 
-  for (int depth = 0; depth < view.options.max_specular_depth; ++depth) {
+  for (int depth = 0;; ++depth) {
     float distance = 0.0f;
     const auto hit = shading.closest(ray, counters, kind, &distance);
     if (!hit) {
@@ -393,7 +402,7 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
     travelled += distance;
     const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
     const Vec3f wo = surface.to_local(-ray.direction);
-    beta *= segment_transmittance(shading, surface, ray, distance);
+    beta *= segment_transmittance(shading, media, surface, ray, distance);
     if (depth == 0) {
       out.depth = distance;
       out.normal = surface.frame.z;
@@ -442,13 +451,13 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
           out.body_indirect += g.indirect;
         }
       };
-      if (directions) take(gather(view, surface, *directions, guide, sampler, counters));
-      if (directions && !view.bright.empty())
+      if (directions) take(gather(view, surface, *directions, media, guide, sampler, counters));
+      if (directions && media.empty() && !view.bright.empty())
         take(look_at_bright(view, surface, wo, *directions, sampler, counters));
     }
-    if (!specular_step(surface, wo, depth, ray, beta, vertex, last, sampler)) break;
+    if (!specular_step(surface, wo, depth, scattered, media, ray, beta, vertex, last, sampler))
+      break;
     if (depth == 0) first = last;
-    if (last != kPaneStraight) ++scattered;
     kind = Counter::RaysSpecular;
   }
   return out;

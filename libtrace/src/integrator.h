@@ -7,6 +7,7 @@
 #include "pixel_sample.h"
 #include "scene/bright_surfaces.h"
 #include "scene/camera.h"
+#include "scene/medium_stack.h"
 #include "scene/sampler.h"
 #include "scene/shading.h"
 #include "trace/render.h"
@@ -98,17 +99,40 @@ template <int N>
   return mis_weight(v.pdf, shading.lights().pdf_environment(v.position, v.normal, direction));
 }
 
-/// Transmittance of the segment that ends at this surface: through the air, or through a solid that
-/// is hit from the inside.
+/// Transmittance of a segment through the innermost of the bodies that the path is known to be in,
+/// or through the air.
+template <int N>
+[[nodiscard]] Spectrum<N> body_transmittance(const scene::Shading<N>& shading,
+                                             const scene::MediumStack& media, const scene::Ray& ray,
+                                             float distance) {
+  if (media.empty()) return shading.through_medium(ray, distance);
+  return exp_minus(shading.material(media.current()).extinction, distance);
+}
+
+/// The same of the segment that ends at this surface: a path that began in a solid learns of it
+/// where it is hit from the inside.
 template <int N>
 [[nodiscard]] Spectrum<N> segment_transmittance(const scene::Shading<N>& shading,
+                                                const scene::MediumStack& media,
                                                 const scene::Interaction<N>& surface,
                                                 const scene::Ray& ray, float distance) {
   const material::Material& m = *shading.material(surface.point.material).source;
-  if (surface.side == scene::Side::Front || m.medium != material::Material::Medium::Solid)
-    return shading.through_medium(ray, distance);
+  if (!media.empty() || surface.side == scene::Side::Front ||
+      m.medium != material::Material::Medium::Solid)
+    return body_transmittance(shading, media, ray, distance);
   if (surface.bsdf.extinction().is_zero()) return Spectrum<N>::one();
   return exp_minus(surface.bsdf.extinction(), distance);
+}
+
+/// Keeps count of the bodies where an event at the surface leads into or out of one.
+template <int N>
+void pass_surface(scene::MediumStack& media, const scene::Interaction<N>& surface,
+                  material::Event event) {
+  if ((event & (material::kRefraction | material::kLobeTransmission)) == 0) return;
+  if (surface.side == scene::Side::Front)
+    media.enter(surface.point.material);
+  else
+    media.leave(surface.point.material);
 }
 
 }  // namespace atrium::trace

@@ -112,7 +112,7 @@ PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& camera_ray,
     const scene::Interaction<N> surface = shading.interact(*hit, -b.ray.direction);
     const Vec3f wo = surface.to_local(-b.ray.direction);
     const material::ResolvedMaterial<N>& resolved = shading.material(hit->material);
-    b.weight *= segment_transmittance(shading, surface, b.ray, distance);
+    b.weight *= segment_transmittance(shading, scene::MediumStack{}, surface, b.ray, distance);
     if (b.depth > 0) b.weight *= ray_falloff(*resolved.source, distance);
     if (b.depth == 0) {
       out.depth = distance;

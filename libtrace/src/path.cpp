@@ -1,5 +1,6 @@
 #include "attribution.h"
 #include "integrator.h"
+#include "scene/roulette.h"
 
 namespace atrium::trace {
 
@@ -39,6 +40,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
   PixelSample<N> out;
   Attribution<N> attribution(view.options.classes);
   ScatterVertex vertex;
+  scene::MediumStack media;
   Spectrum<N> beta = Spectrum<N>::one();
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
@@ -58,7 +60,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
     const Vec3f wo_world = -ray.direction;
     const scene::Interaction<N> surface = shading.interact(*hit, wo_world);
     const Vec3f wo = surface.to_local(wo_world);
-    beta *= segment_transmittance(shading, surface, ray, distance);
+    beta *= segment_transmittance(shading, media, surface, ray, distance);
     if (depth == 0) {
       out.depth = distance;
       out.normal = surface.frame.z;
@@ -82,6 +84,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
     else if (attribution.open())
       attribution.scatter(s->event, surface.bsdf.eval(wo, s->wi));
     beta *= s->weight;
+    pass_surface(media, surface, s->event);
     if ((s->event & (kRefraction | kLobeTransmission)) != 0)
       eta_scale *= surface.bsdf.eta() * surface.bsdf.eta();
     if (s->event != kPaneStraight) {
@@ -89,7 +92,7 @@ PixelSample<N> trace_path(const View<N>& view, const scene::Ray& camera_ray,
       vertex = {!s->dirac(), hit->position, light_normal(surface), s->pdf};
     }
     if (depth >= kRouletteDepth) {
-      const float survive = std::min(0.97f, beta.max() * eta_scale);
+      const float survive = std::min(scene::long_path_survival(scattered), beta.max() * eta_scale);
       if (!(sampler.next_1d() < survive)) break;
       beta /= survive;
     }

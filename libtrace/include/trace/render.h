@@ -57,7 +57,7 @@ struct RenderOptions {
   double error = 0.0, block_error = 0.0;
   double time_limit = 0.0;  ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
-  int max_specular_depth = 64;  ///< mirror and glass events of one path (hybrid, paper)
+  int max_specular_depth = 64;  ///< mirror and glass events of one path (paper mode)
   /// Average body light over neighbouring pixels of one surface as far as their noise allows (not
   /// in Method::Path or paper mode).
   bool share_samples = true;

@@ -361,8 +361,10 @@ EmissionSample<N> FiniteLights<N>::emission_of(const Positional& light, const Ve
   const float cos_max = cone_of(light);
   const Vec3f local = uniform_cone(u, cos_max);  // around +z; the light looks along -z
   EmissionSample<N> s;
-  s.origin = light.position;
   s.direction = light.to_local.transpose() * Vec3f(local.x(), local.y(), -local.z());
+  // A lamp in the plane of a ceiling shines from either side of it, not into it.
+  constexpr float kRounding = 28.0f * 0x1p-24f;
+  s.origin = light.position + kRounding * light.position.cwiseAbs().maxCoeff() * s.direction;
   s.weight = intensity_towards(light, s.direction) * (2.0f * kPi * (1.0f - cos_max));
   s.source = light.index;
   s.dirac = true;

@@ -147,7 +147,7 @@ void write_image(const Image& image, const fs::path& file) {
   const Image content = content_for(image, format, file);
   OutputFile out(file);
   if (format == Format::Pfm) {
-    write_pfm(content, out.path());
+    if (!write_pfm(content, out.path())) throw RuntimeFailure(file.string() + ": writing failed");
   } else {
     const std::string problem = loader().get().write(content, out.path().string());
     if (!problem.empty()) throw RuntimeFailure(file.string() + ": writing failed: " + problem);

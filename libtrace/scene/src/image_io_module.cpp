@@ -6,8 +6,11 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <exception>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -157,15 +160,30 @@ class OiioModule final : public ImageIoModule {
       spec.attribute("oiio:ColorSpace", "sRGB");
       spec.attribute("CompressionQuality", 95);
     }
+    // Into memory first: libpng's writer takes no notice of a full disk, libjpeg's ends the
+    // process.
+    OIIO::Filesystem::IOVecOutput memory;
+    void* proxy = &memory;
+    const bool in_memory = output->supports("ioproxy");
+    if (in_memory) spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     if (!output->open(file, spec)) return one_line(output->geterror());
     bool ok = output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
     ok = output->close() && ok;
-    return ok ? std::string() : one_line(output->geterror());
+    if (!ok) return one_line(output->geterror());
+    return in_memory ? write_bytes(memory.buffer(), file) : std::string();
   } catch (const std::exception& e) {
     return one_line(e.what());
   }
 
  private:
+  static std::string write_bytes(const std::vector<unsigned char>& bytes, const std::string& file) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()),
+              static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    return out ? std::string() : std::string(std::strerror(errno));
+  }
+
   static void linearise(const OIIO::ImageSpec& spec, Image& image) {
     const std::size_t n = image.channels.size();
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {

@@ -65,7 +65,7 @@ Image read_pfm(const std::filesystem::path& file) {
   return image;
 }
 
-void write_pfm(const Image& image, const std::filesystem::path& file) {
+bool write_pfm(const Image& image, const std::filesystem::path& file) {
   Image flipped = image;
   flip_rows(flipped);
   std::ofstream out(file, std::ios::binary);
@@ -75,7 +75,7 @@ void write_pfm(const Image& image, const std::filesystem::path& file) {
   out.write(reinterpret_cast<const char*>(flipped.pixels.data()),
             static_cast<std::streamsize>(flipped.pixels.size() * sizeof(float)));
   out.close();
-  if (!out) throw RuntimeFailure(file.string() + ": writing failed");
+  return static_cast<bool>(out);
 }
 
 }  // namespace atrium::scene

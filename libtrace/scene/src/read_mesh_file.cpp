@@ -2,6 +2,7 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cstdio>
 #include <unordered_map>
 
 #include "import_util.h"
@@ -80,6 +81,25 @@ MeshData mesh_data(const aiMesh& source, const std::filesystem::path& file) {
   return mesh;
 }
 
+/// Far from the origin single precision, which is what these files are read in, is coarse.
+void warn_of_rounding(Model& model, std::size_t first_mesh, const std::filesystem::path& file) {
+  constexpr double kMost = 1e-4;  // of the model's size
+  Bounds bounds;
+  for (std::size_t i = first_mesh; i < model.meshes.size(); ++i)
+    for (const Vec3d& p : model.meshes[i].positions)
+      if (p.allFinite()) bounds.extend(p);
+  if (bounds.isEmpty()) return;
+  const double reach = bounds.min().cwiseAbs().cwiseMax(bounds.max().cwiseAbs()).maxCoeff();
+  const double rounding = 0x1p-24 * reach;
+  if (!(rounding > kMost * bounds.diagonal().norm())) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                ": coordinates up to %.3g m are read in single precision, which moves them by up "
+                "to %.2g m; move the model to the origin, or use glTF, OBJ or YAML",
+                reach, rounding);
+  model.warnings.push_back(file.string() + text);
+}
+
 }  // namespace
 
 void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadOptions&) {
@@ -90,6 +110,7 @@ void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadO
     throw Error(file.string() + ": " + one_line(importer.GetErrorString()));
   }
   const bool stl = file.extension() != ".ply" && file.extension() != ".PLY";
+  const std::size_t first_mesh = model.meshes.size();
   MaterialId material;
   std::vector<std::pair<const aiNode*, Eigen::Affine3d>> open{
       {scene->mRootNode, Eigen::Affine3d::Identity()}};
@@ -116,6 +137,7 @@ void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadO
     }
   }
   if (!material.valid()) throw Error(file.string() + ": has no triangles");
+  warn_of_rounding(model, first_mesh, file);
 }
 
 }  // namespace atrium::scene

@@ -1,5 +1,7 @@
 #include "scene/shading.h"
 
+#include <limits>
+
 namespace atrium::scene {
 namespace {
 
@@ -186,12 +188,16 @@ Spectrum<N> Shading<N>::through_medium(const Ray& ray, float distance) const {
   float enter = 0.0f;
   float leave = distance;
   for (int axis = 0; axis < 3; ++axis) {
-    const float inverse = 1.0f / ray.direction[axis];
+    const float along = ray.direction[axis];
+    const float from = ray.origin[axis];
     const auto low = static_cast<float>(scene().bounds.min()[axis]);
     const auto high = static_cast<float>(scene().bounds.max()[axis]);
-    const float a = (low - ray.origin[axis]) * inverse;
-    const float b = (high - ray.origin[axis]) * inverse;
-    if (std::isnan(a) || std::isnan(b)) continue;  // within a face of the bounds, along it
+    if (!(std::abs(along) > std::numeric_limits<float>::min())) {  // beside the slab or within it
+      if (from < low || from > high) return Spectrum<N>::one();
+      continue;
+    }
+    const float a = (low - from) / along;
+    const float b = (high - from) / along;
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
   }
