@@ -53,7 +53,7 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
   if (!(error > 0.0)) {
     const Effort effort = effort_of(c.solve.quality);
     plan.samples = c.samples > 0 ? c.samples : effort.samples;
-    plan.indirect = choice_or(c.indirect, effort.indirect);
+    plan.indirect = choice_or(c.indirect, c.classes ? trace::Indirect::Gather : effort.indirect);
     return plan;
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;

@@ -69,26 +69,6 @@ double mean_over_plan(const std::function<double(double x, double z)>& f) {
   return sum / (kSteps * kSteps);
 }
 
-struct Layer {
-  double mean = 0.0, error = 0.0;
-};
-/// Mean luminance of a class over the picture, with its standard error.
-Layer layer(const scene::Image& image, std::string_view name) {
-  Layer r;
-  const int rgb[3] = {image.channel_index(std::string(name) + ".R"),
-                      image.channel_index(std::string(name) + ".G"),
-                      image.channel_index(std::string(name) + ".B")};
-  const int e = image.channel_index("stderr." + std::string(name) + ".Y");
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      r.mean += static_cast<double>(
-          luminance(Rgb::generate([&](int c) { return image.at(x, y, rgb[c]); })));
-      r.error += std::pow(static_cast<double>(image.at(x, y, e)), 2.0);
-    }
-  const double n = image.width * image.height;
-  return {r.mean / n, std::sqrt(r.error) / n};
-}
-
 RenderOptions options(PathKind paths, int size, int samples) {
   RenderOptions o = path_options(size, samples);
   o.paths = paths;
