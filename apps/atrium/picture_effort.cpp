@@ -54,7 +54,7 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
     const Effort effort = effort_of(c.solve.quality);
     plan.spread = c.samples == 0 && c.method != trace::Method::Path;
     plan.samples = c.samples > 0 ? c.samples : plan.spread ? effort.mean_samples : effort.samples;
-    plan.indirect = choice_or(c.indirect, effort.indirect);
+    plan.indirect = choice_or(c.indirect, c.classes ? trace::Indirect::Gather : effort.indirect);
     return plan;
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;

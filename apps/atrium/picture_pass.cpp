@@ -20,7 +20,7 @@ trace::RenderOptions render_options(const Session& session, const RenderCommand&
   trace::RenderOptions o;
   o.method = c.method;
   o.mode = c.mode;
-  o.indirect = c.classes ? trace::Indirect::Gather : effort.indirect;
+  o.indirect = effort.indirect;
   // After an interrupt the picture is one cheap sample of what was solved until then.
   if (session.interrupted() && !c.classes) o.indirect = trace::Indirect::Mesh;
   const auto [width, height] = size_for(c, camera);

@@ -300,13 +300,14 @@ PixelSample<N> trace_bidirectional(const View<N>& view, const Eye& eye,
     if (s->event != kPaneStraight) {
       const auto out_cosine = static_cast<double>(std::abs(wi.dot(surface.ng)));
       weights = here;
-      if (s->dirac()) {
+      if (!s->dirac()) {
+        const SeenFrom<N> light(shading, surface, wi);
+        weights.scatter(out_cosine, static_cast<double>(s->pdf),
+                        static_cast<double>(density(*light, wi, to_eye)));
+      } else if (reversible(shading, surface, wi)) {
         weights.pass_dirac(out_cosine);
       } else {
-        const SeenFrom<N> from_light(shading, surface, wi);
-        weights.scatter(out_cosine, static_cast<double>(s->pdf),
-                        static_cast<double>(from_light->bsdf.pdf(from_light->to_local(wi),
-                                                                 from_light->to_local(to_eye))));
+        weights = {};
       }
       ++scattered;
       vertex = hit->position;

@@ -68,9 +68,7 @@ bool scatter(const View<N>& view, const scene::Interaction<N>& surface, const Bs
   const float in = std::abs(to_light.dot(surface.ng)), out = std::abs(to_eye.dot(surface.ng));
   if (s.dirac()) {
     // A camera would have taken this way back only if it sees the same shading normal.
-    const SeenFrom<N> eye(view.shading, surface, to_eye);
-    const float sign = to_eye.dot(surface.ng) > 0.0f ? 1.0f : -1.0f;
-    if ((eye->frame.z - sign * surface.frame.z).squaredNorm() > 1e-8f) return false;
+    if (!reversible(view.shading, surface, to_eye)) return false;
     const float shaded_in = std::abs(to_light.dot(surface.frame.z));
     flux *= s.weight * (shaded_in * out / (std::abs(s.wi.z()) * in));
     weights.pass_dirac(static_cast<double>(out));
@@ -103,7 +101,7 @@ std::optional<Scattering<N>> scattering(const scene::Shading<N>& shading,
   s.reflected = wi.z() > 0.0f;
   s.pdf_to_light = eye->bsdf.pdf(wo, wi);
   const SeenFrom<N> light(shading, surface, to_light);
-  s.pdf_to_eye = light->bsdf.pdf(light->to_local(to_light), light->to_local(to_eye));
+  s.pdf_to_eye = density(*light, to_light, to_eye);
   return s;
 }
 

@@ -65,6 +65,27 @@ class SeenFrom {
   const scene::Interaction<N>* surface_;
 };
 
+/// Does a path that leaves in direction w by a Dirac event see the shading normal that one has
+/// which comes back that way? If not, only one of the two exists.
+template <int N>
+[[nodiscard]] bool reversible(const scene::Shading<N>& shading,
+                              const scene::Interaction<N>& surface, const Vec3f& w) {
+  const SeenFrom<N> back(shading, surface, w);
+  const float sign = w.dot(surface.ng) > 0.0f ? 1.0f : -1.0f;
+  return (back->frame.z - sign * surface.frame.z).squaredNorm() <= 1e-8f;
+}
+
+/// Density [1/sr] of the direction `to` for a path that came from direction `from` (both away from
+/// the surface, which is seen from there); 0 where the path would end, shading normal against
+/// surface.
+template <int N>
+[[nodiscard]] float density(const scene::Interaction<N>& surface, const Vec3f& from,
+                            const Vec3f& to) {
+  const Vec3f wi = surface.to_local(to);
+  if ((wi.z() > 0.0f) != (to.dot(surface.ng) > 0.0f)) return 0.0f;
+  return surface.bsdf.pdf(surface.to_local(from), wi);
+}
+
 /// What a surface makes of light on its way to the eye, and how likely either direction is. The
 /// camera's view of the surface decides, so that paths from lights carry the same light.
 template <int N>

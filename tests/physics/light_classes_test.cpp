@@ -72,23 +72,6 @@ scene::Scene sun_room() {
   return s.build();
 }
 
-/// Mean luminance of a class of one picture and the square of its standard error.
-struct Layer {
-  double mean = 0.0, variance = 0.0;
-};
-Layer layer(const scene::Image& image, const std::string& name) {
-  Layer r;
-  const int value = image.channel_index(name + ".G");
-  const int error = image.channel_index("stderr." + name + ".Y");
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      r.mean += static_cast<double>(image.at(x, y, value));
-      r.variance += std::pow(static_cast<double>(image.at(x, y, error)), 2.0);
-    }
-  const double n = image.width * image.height;
-  return {r.mean / n, r.variance / (n * n)};
-}
-
 // Hybrid and reference, class by class: four standard errors of both pictures and, of classes that
 // the hybrid reads from elements of some 8 cm, 1 % of the light for what they smear.
 void expect_agreement(const scene::Scene& scene) {
@@ -105,11 +88,11 @@ void expect_agreement(const scene::Scene& scene) {
   const scene::Image image = render(query, basis, camera, solved.field, hybrid).image;
   EXPECT_FALSE(choose_strategy(scene).missing.empty());
   double whole = 0.0;
-  for (const std::string_view c : kLightClassNames) whole += layer(reference, std::string(c)).mean;
+  for (const std::string_view c : kLightClassNames) whole += layer(reference, c).mean;
   for (std::size_t c = 0; c < kLightClasses; ++c) {
     const std::string name(kLightClassNames[c]);
     const Layer a = layer(image, name), b = layer(reference, name);
-    const double error = std::sqrt(a.variance + b.variance);
+    const double error = std::hypot(a.error, b.error);
     const bool traced = c <= static_cast<std::size_t>(LightClass::LDSE);
     const double tolerance = 4.0 * error + (traced ? 1e-5 : 0.01) * whole;
     // Of these the reference says that it lacks a part.

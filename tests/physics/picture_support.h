@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include "support/scenes.h"
 #include "trace/render.h"
@@ -52,6 +53,24 @@ inline RenderOptions path_options(int size, int samples) {
   o.width = o.height = size;
   o.samples = samples;
   return o;
+}
+
+/// Mean luminance of a class of light paths over a picture, with its standard error.
+struct Layer {
+  double mean = 0.0, error = 0.0;
+};
+inline Layer layer(const scene::Image& image, std::string_view name) {
+  Layer r;
+  const int first = image.channel_index(std::string(name) + ".R");  // G and B follow
+  const int e = image.channel_index("stderr." + std::string(name) + ".Y");
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      r.mean += static_cast<double>(
+          luminance(Rgb::generate([&](int c) { return image.at(x, y, first + c); })));
+      r.error += std::pow(static_cast<double>(image.at(x, y, e)), 2.0);
+    }
+  const double n = image.width * image.height;
+  return {r.mean / n, std::sqrt(r.error) / n};
 }
 
 }  // namespace atrium::trace
