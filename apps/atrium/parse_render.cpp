@@ -155,7 +155,7 @@ class RenderParser : public CommandParser {
         ->capture_default_str();
     app.add_option(
            "--samples", o_.samples,
-           "of every pixel; 0: from the quality (12, 16, 128 in the mean, more where the error is; "
+           "of every pixel; 0: from the quality (12, 14, 128 in the mean, more where the error is; "
            "path: 16, 64, 256 of every pixel); with an error asked for the most")
         ->check(CLI::Range(0, 1 << 24))
         ->capture_default_str();

@@ -22,7 +22,7 @@ struct Effort {
     case Quality::Draft:
       return {16, 12, trace::Indirect::Gather, 15000, 32, 32, 8, 200000};
     case Quality::Normal:
-      return {64, 16, trace::Indirect::Gather, 60000, 64, 128, 16, 1000000};
+      return {64, 14, trace::Indirect::Gather, 60000, 64, 128, 16, 1000000};
     case Quality::High:
       break;
   }
