@@ -4,6 +4,8 @@
 #   scripts/install_deps.sh build web    and to make web pages (.html)
 #   scripts/install_deps.sh build test   and to run the tests
 #   scripts/install_deps.sh build bench  and to run the benchmarks
+#   scripts/install_deps.sh build fuzz   and to fuzz the readers (docs/robustness.md)
+#   scripts/install_deps.sh build tidy   and for the preset tidy
 set -eu
 
 build="g++ cmake ninja-build ccache pkg-config
@@ -14,6 +16,8 @@ build="g++ cmake ninja-build ccache pkg-config
 web="nodejs npm"
 test="libgtest-dev xvfb xauth chromium"
 bench="libbenchmark-dev python3"
+fuzz="clang libclang-rt-14-dev libgtest-dev"
+tidy="clang clang-tidy libgtest-dev"
 
 wanted=""
 for list in "$@"; do
@@ -22,7 +26,9 @@ for list in "$@"; do
     web) command -v npm >/dev/null || wanted="$wanted $web" ;;
     test) wanted="$wanted $test" ;;
     bench) wanted="$wanted $bench" ;;
-    *) echo "install_deps.sh: unknown list '$list' (known: build web test bench)" >&2; exit 2 ;;
+    fuzz) wanted="$wanted $fuzz" ;;
+    tidy) wanted="$wanted $tidy" ;;
+    *) echo "install_deps.sh: unknown list '$list' (known: build web test bench fuzz tidy)" >&2; exit 2 ;;
   esac
 done
 

@@ -32,14 +32,14 @@ class Report {
     if (json_) {
       writer.member(name, value);
     } else {
-      print(std::string(name) + ": " + text(value) + (*unit ? " " : "") + unit + "\n");
+      print(std::string(name) + ": " + printable(text(value)) + (*unit ? " " : "") + unit + "\n");
     }
   }
   void list(const char* name, const std::vector<std::string>& items) {
     if (json_) writer.begin_array(name);
     if (!json_ && !items.empty()) print(std::string(name) + ":\n");
     for (const std::string& item : items) {
-      json_ ? writer.element(item) : print("  " + item + "\n");
+      json_ ? writer.element(item) : print("  " + printable(item) + "\n");
     }
     if (json_) writer.end();
   }

@@ -90,7 +90,7 @@ int run_measure(const MeasureCommand& c, std::stop_token stop) {
   std::vector<radiosity::Sensor> sensors;
   if (!c.points.empty()) sensors = read_sensors(c.points);  // before anything is solved
   Session session(c.common, std::move(stop));
-  const LoadedScene loaded = load_scene(session, c.scene, {});
+  const LoadedScene loaded = load_scene(session, c.scene, {.memory_limit = c.solve.memory_limit});
   if (session.interrupted()) return kInterrupted;
   if (loaded.basis.lanes() > kMaxLanes)
     throw Error("--spectrum " + c.scene.spectrum + ": measure takes up to " +

@@ -311,7 +311,8 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   // A solution must fit whatever camera comes later, so the mesh must not depend on this one.
   const bool own_mesh = c.solution.empty() && c.save_solution.empty() && !walk;
   LoadedScene loaded = load_scene(
-      session, c.scene, {.camera = c.camera, .follow_view = own_mesh, .show_warnings = true});
+      session, c.scene,
+      {.camera = c.camera, .follow_view = own_mesh, .memory_limit = c.solve.memory_limit});
   if (session.interrupted()) return kInterrupted;
   const std::vector<ViewJob> jobs =
       walk ? walk_jobs(*walk, loaded.scene->origin) : camera_jobs(session, c, loaded);

@@ -90,13 +90,16 @@ LoadedScene load_scene(Session& session, const SceneOptions& options,
   session.clock.enter("load");
   session.progress.report("load", 0.0, {});
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
-  scene::Model model =
-      scene::read_model(files, {.emissive_nits_per_unit = options.nits_per_emissive_unit});
+  const auto memory_limit = static_cast<std::uint64_t>(1e6 * settings.memory_limit);
+  scene::Model model = scene::read_model(
+      files,
+      {.emissive_nits_per_unit = options.nits_per_emissive_unit, .memory_limit = memory_limit});
 
   LoadedScene loaded;
   loaded.views = select_cameras(settings.camera, model.cameras);
   scene::BuildOptions build;
   build.pane_detection = options.pane_detection;
+  build.memory_limit = memory_limit;
   if (settings.follow_view && loaded.views.size() == 1) build.view = model.cameras[loaded.views[0]];
   loaded.scene = std::make_unique<scene::Scene>(scene::build_scene(std::move(model), build));
   if (settings.show_warnings) show_warnings(session.progress, loaded.scene->report.warnings);

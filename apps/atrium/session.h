@@ -53,9 +53,10 @@ struct LoadedScene {
                                                       const std::vector<scene::Camera>& cameras);
 
 struct LoadSettings {
-  std::string camera;         ///< as --camera
+  std::string camera = {};    ///< as --camera
   bool follow_view = false;   ///< tessellate subdivision surfaces for the one camera asked for
   bool show_warnings = true;  ///< on stderr
+  double memory_limit = 0.0;  ///< [MB] for geometry and textures; 0: none
 };
 
 /// Reads, repairs, indexes.

@@ -37,7 +37,7 @@ int run_solve(const SolveCommand& c, std::stop_token stop) {
         "solve: radiosity is not part of this build (ATRIUM_WITH_OPENMESH was off)");
   }
   Session session(c.common, std::move(stop));
-  const LoadedScene loaded = load_scene(session, c.scene, {});
+  const LoadedScene loaded = load_scene(session, c.scene, {.memory_limit = c.solve.memory_limit});
   if (session.interrupted()) return kInterrupted;
   if (loaded.basis.lanes() > kMaxLanes)
     throw Error("--spectrum " + c.scene.spectrum + ": solve takes up to " +

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "material/error.h"
+
 namespace atrium::app {
 
 namespace {
@@ -97,7 +99,7 @@ void Progress::note(std::string_view line) {
 
 void Progress::warning(std::string_view line) {
   clear();
-  print("atrium: warning: " + std::string(line) + "\n");
+  print("atrium: warning: " + printable(line) + "\n");
 }
 
 }  // namespace atrium::app

@@ -15,8 +15,13 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <new>
+#include <stdexcept>
+
+#include "check_cells.h"
 #include "material/error.h"
 #include "mesh.h"
+#include "scene/mesh_io.h"
 #include "scene/output_file.h"
 #include "vtk_errors.h"
 
@@ -29,7 +34,13 @@ auto read_with(const std::string& file) {
   VtkErrors errors;
   vtkNew<Reader> reader;
   reader->SetFileName(file.c_str());
-  reader->Update();
+  try {
+    reader->Update();
+  } catch (const std::length_error&) {  // of lists that no memory holds
+    throw Error(file + ": is damaged");
+  } catch (const std::bad_alloc&) {
+    throw Error(file + ": is damaged, or larger than the memory");
+  }
   if (!errors.text().empty() || reader->GetErrorCode() != 0)
     throw Error(file + ": is damaged or no mesh of its ending" +
                 (errors.text().empty() ? "" : ": " + errors.text()));
@@ -68,7 +79,7 @@ vtkSmartPointer<vtkPolyData> surface_of(vtkUnstructuredGrid* grid) {
   return data;
 }
 
-void add_geometry(vtkPolyData& data, const std::string& file, scene::PolygonMesh& mesh) {
+void add_geometry(vtkPolyData& data, scene::PolygonMesh& mesh) {
   const vtkIdType points = data.GetNumberOfPoints();
   for (vtkIdType i = 0; i < points; ++i) mesh.points.emplace_back(data.GetPoint(i));
   const auto cells = vtk::TakeSmartPointer(data.GetPolys()->NewIterator());
@@ -76,13 +87,8 @@ void add_geometry(vtkPolyData& data, const std::string& file, scene::PolygonMesh
     vtkIdType size = 0;
     const vtkIdType* ids = nullptr;
     cells->GetCurrentCell(size, ids);
-    for (vtkIdType i = 0; i < size; ++i) {
-      if (ids[i] < 0 || ids[i] >= points)
-        throw Error(file + ": polygon " + std::to_string(mesh.polygon_sizes.size()) +
-                    " has corner " + std::to_string(ids[i]) + ", but there are " +
-                    std::to_string(points) + " points");
+    for (vtkIdType i = 0; i < size; ++i)
       mesh.polygon_points.push_back(static_cast<std::uint32_t>(ids[i]));
-    }
     mesh.polygon_sizes.push_back(static_cast<std::uint32_t>(size));
   }
 }
@@ -122,21 +128,12 @@ vtkSmartPointer<vtkPolyData> read_polygons(const std::string& file, const std::s
   if (ending == ".vtp") {
     const auto data = read_with<vtkXMLPolyDataReader>(file);
     texts = data->GetFieldData();
+    check_cells(*data, file);
     return polygons_only(data);
   }
   const auto grid = read_with<vtkXMLUnstructuredGridReader>(file);
   texts = grid->GetFieldData();
-  const vtkIdType points = grid->GetNumberOfPoints();
-  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    grid->GetCellPoints(c, size, ids);
-    for (vtkIdType i = 0; i < size; ++i)
-      if (ids[i] < 0 || ids[i] >= points)
-        throw Error(file + ": polygon " + std::to_string(c) + " has corner " +
-                    std::to_string(ids[i]) + ", but there are " + std::to_string(points) +
-                    " points");
-  }
+  check_cells(*grid, file);
   return surface_of(grid);
 }
 
@@ -151,10 +148,11 @@ Mesh read_mesh(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (!std::filesystem::is_regular_file(path)) throw Error(file + ": cannot be read: no such file");
   if (!is_mesh_file(path)) throw Error(file + ": unknown mesh format (known: .vtp .vtu)");
+  scene::check_mesh_file(path);
   vtkSmartPointer<vtkFieldData> texts;
   const auto data = read_polygons(file, scene::file_ending(path), texts);
   scene::PolygonMesh polygons;
-  add_geometry(*data, file, polygons);
+  add_geometry(*data, polygons);
   polygons.cell_arrays = arrays_of(*data->GetCellData());
   polygons.point_arrays = arrays_of(*data->GetPointData());
   add_field_data(*texts, polygons);

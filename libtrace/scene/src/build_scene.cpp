@@ -5,7 +5,9 @@
 
 #include "material/error.h"
 #include "mesh_repair.h"
+#include "model_budget.h"
 #include "pane_detection.h"
+#include "scene/limits.h"
 #include "scene/parallel.h"
 #include "scene/scene.h"
 #include "subdivision.h"
@@ -59,6 +61,12 @@ std::vector<const Model::Node*> usable_nodes(const Model& model, LoadReport& rep
   return out;
 }
 
+void check_triangles(std::uint64_t triangles) {
+  if (triangles > limits::kSceneTriangles)
+    throw Error("the scene has more than " + std::to_string(limits::kSceneTriangles) +
+                " triangles, those of every copy counted");
+}
+
 void tessellate_cages(Model& model, const BuildOptions& options, LoadReport& report) {
   std::vector<const Model::Node*> user(model.meshes.size(), nullptr);
   for (const Model::Node& node : model.nodes) {
@@ -71,6 +79,16 @@ void tessellate_cages(Model& model, const BuildOptions& options, LoadReport& rep
     mesh = tessellate(mesh, options.subdivision_error, user[i]->to_world, options.view);
     mesh.cage.reset();
     report.subdivision_triangles += mesh.triangles.size();
+    check_triangles(report.subdivision_triangles);
+  }
+}
+
+/// Copies share a mesh, but not all that is computed for a triangle.
+void check_copies(const Model& model, const std::vector<const Model::Node*>& nodes) {
+  std::uint64_t triangles = 0;
+  for (const Model::Node* node : nodes) {
+    triangles += model.meshes[node->mesh.value].triangles.size();
+    check_triangles(triangles);
   }
 }
 
@@ -176,6 +194,19 @@ std::vector<Job> plan_jobs(const Model& model, const std::vector<const Model::No
     }
   }
   return jobs;
+}
+
+/// Do the meshes fit that the jobs make, beside the model?
+void check_memory(const std::vector<Job>& jobs, const Model& model, std::uint64_t limit) {
+  if (limit == 0) return;
+  std::uint64_t bytes = 0;
+  for (const MeshData& mesh : model.meshes) bytes += bytes_of(mesh);
+  for (const material::Texture& texture : model.textures) bytes += texture.pixels.size();
+  for (const Job& job : jobs) bytes += bytes_of(model.meshes[job.source.value]);
+  if (bytes > limit)
+    throw RuntimeFailure("the scene needs " + megabytes(bytes) +
+                         " while it is built; a memory limit of " + megabytes(limit) +
+                         " does not hold it");
 }
 
 Vec3d centre_of(const MeshData& mesh) {
@@ -373,12 +404,14 @@ Scene build_scene(Model model, const BuildOptions& options) {
   for (MeshData& mesh : model.meshes) check_mesh(mesh, scene.report);
 
   const std::vector<const Model::Node*> nodes = usable_nodes(model, scene.report);
+  check_copies(model, nodes);
   const Bounds bounds = world_bounds(model, nodes);
   if (bounds.isEmpty()) throw Error("no geometry: the scene has no triangles");
   scene.origin = scene_origin(bounds);
   if (!scene.origin.allFinite()) throw Error("no usable geometry: its coordinates are too large");
 
   std::vector<Job> jobs = plan_jobs(model, nodes, options);
+  check_memory(jobs, model, options.memory_limit);
   parallel_for(jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) run_job(jobs[i], model, nodes, scene.origin, options);
   });

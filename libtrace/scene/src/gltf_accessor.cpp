@@ -4,12 +4,10 @@
 #include <cstring>
 
 #include "material/error.h"
+#include "scene/limits.h"
 
 namespace atrium::scene {
 namespace {
-
-// Elements without data of their own (all zero, or sparse) that are still believed.
-constexpr std::size_t kMostZeros = 50'000'000;
 
 std::string name_of(int accessor) { return "accessor " + std::to_string(accessor); }
 
@@ -114,7 +112,7 @@ Elements locate_base(const GltfDocument& document, const tinygltf::Accessor& a,
   if (a.bufferView >= 0) {
     return locate(document, a.bufferView, a.byteOffset, a.count, element_bytes, true, who);
   }
-  if (a.count > kMostZeros) {
+  if (a.count > limits::kElementsWithoutData) {
     throw Error(document.at(who + ": " + std::to_string(a.count) + " elements without data"));
   }
   return {nullptr, a.count, element_bytes};
@@ -187,7 +185,17 @@ int gltf_components(const GltfDocument& document, int accessor) {
   }
 }
 
-std::vector<float> gltf_attribute(const GltfDocument& document, int accessor, int components) {
+std::size_t gltf_count(const GltfDocument& document, int accessor) {
+  const tinygltf::Accessor& a = checked_accessor(document, accessor);
+  const std::string who = name_of(accessor);
+  const auto components = static_cast<std::size_t>(gltf_components(document, accessor));
+  const std::size_t bytes = component_bytes(document, a.componentType, who);
+  static_cast<void>(locate_base(document, a, components * bytes, who));
+  return a.count;
+}
+
+std::vector<float> gltf_attribute(const GltfDocument& document, int accessor, int components,
+                                  const std::vector<std::uint32_t>* only) {
   const tinygltf::Accessor& a = checked_accessor(document, accessor);
   const std::string who = name_of(accessor);
   if (gltf_components(document, accessor) != components) {
@@ -196,16 +204,23 @@ std::vector<float> gltf_attribute(const GltfDocument& document, int accessor, in
   const auto width = static_cast<std::size_t>(components);
   const std::size_t bytes = component_bytes(document, a.componentType, who);
   const Elements base = locate_base(document, a, bytes * width, who);
-  std::vector<float> out(a.count * width, 0.0f);
-  const auto write = [&](std::size_t element, const unsigned char* p) {
-    float* to = out.data() + element * width;
+  const std::size_t count = only == nullptr ? a.count : only->size();
+  std::vector<float> out(count * width, 0.0f);
+  const auto write = [&](std::size_t place, const unsigned char* p) {
+    float* to = out.data() + place * width;
     for (std::size_t k = 0; k < width; ++k)
       to[k] = component(p + k * bytes, a.componentType, a.normalized);
   };
   if (base.first != nullptr) {
-    for (std::size_t i = 0; i < a.count; ++i) write(i, base.at(i));
+    for (std::size_t i = 0; i < count; ++i) write(i, base.at(only == nullptr ? i : (*only)[i]));
   }
-  for_each_sparse(document, a, bytes * width, who, write);
+  for_each_sparse(document, a, bytes * width, who,
+                  [&](std::uint32_t element, const unsigned char* p) {
+                    if (only == nullptr) return write(element, p);
+                    const auto at = std::lower_bound(only->begin(), only->end(), element);
+                    if (at != only->end() && *at == element)
+                      write(static_cast<std::size_t>(at - only->begin()), p);
+                  });
   return out;
 }
 

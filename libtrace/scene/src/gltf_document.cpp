@@ -10,32 +10,12 @@
 
 #include <sstream>
 
+#include "gltf_check.h"
 #include "import_util.h"
 #include "material/error.h"
 
 namespace atrium::scene {
 namespace {
-
-constexpr int kDeepest = 100;  // brackets in brackets; the parser's helpers recurse
-
-/// Refuses JSON so deeply nested that a recursive reader could run out of stack.
-void check_nesting(const std::filesystem::path& file, const std::uint8_t* text, std::size_t size) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < size; ++i) {
-    const char c = static_cast<char>(text[i]);
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kDeepest) throw Error(file.string() + ": JSON is nested too deeply");
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-}
 
 /// Images of buffer views are decoded from there later; those of data URIs keep their bytes here.
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
@@ -44,16 +24,33 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
   return true;
 }
 
-/// The parser also looks into the working directory; only the file's own folder counts.
+/// Where the files lie that a document names. The parser is given no folder, so that what it asks
+/// for are the file's own words: it decodes `%20` and friends, and tries the working directory
+/// ("./").
+struct Folder {
+  const std::filesystem::path& model;
+  std::uintmax_t left = limits::kFileBytes;  ///< of all files together
+
+  [[nodiscard]] std::filesystem::path find(const std::string& asked) const {
+    return file_beside(model, asked.starts_with("./") ? asked.substr(2) : asked);
+  }
+};
+
 bool exists_beside(const std::string& path, void* folder) {
-  const std::string& base = *static_cast<const std::string*>(folder);
-  return path.starts_with(base) && std::filesystem::is_regular_file(path);
+  try {
+    std::error_code code;
+    return std::filesystem::is_regular_file(static_cast<Folder*>(folder)->find(path), code);
+  } catch (const Error&) {
+    return true;  // reading it says what is wrong
+  }
 }
 
 bool read_beside(std::vector<unsigned char>* out, std::string* error, const std::string& path,
-                 void*) {
+                 void* user_data) {
+  Folder& folder = *static_cast<Folder*>(user_data);
   try {
-    *out = read_file_bytes(path);
+    *out = read_file_bytes(folder.find(path), folder.left);
+    folder.left -= out->size();
     return true;
   } catch (const Error& e) {
     *error += e.what();
@@ -61,35 +58,12 @@ bool read_beside(std::vector<unsigned char>* out, std::string* error, const std:
   }
 }
 
-bool is_binary(const std::vector<std::uint8_t>& bytes) {
-  return bytes.size() >= 4 && std::equal(bytes.begin(), bytes.begin() + 4, "glTF");
-}
-
-void check_header(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes) {
-  if (!is_binary(bytes)) return check_nesting(file, bytes.data(), bytes.size());
-  if (bytes.size() < 20) throw Error(file.string() + ": truncated: no room for the glTF header");
-  const auto word = [&](std::size_t at) {
-    return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
-           static_cast<std::uint32_t>(bytes[at + 2]) << 16 |
-           static_cast<std::uint32_t>(bytes[at + 3]) << 24;
-  };
-  if (word(4) != 2) {
-    throw Error(file.string() + ": glTF version " + std::to_string(word(4)) + ", only 2 is read");
-  }
-  if (word(8) > bytes.size() || word(12) > bytes.size() - 20) {
-    throw Error(file.string() + ": truncated: " + std::to_string(bytes.size()) + " of " +
-                std::to_string(word(8)) + " bytes");
-  }
-  check_nesting(file, bytes.data() + 20, word(12));
-}
-
 }  // namespace
 
-GltfDocument load_gltf(const std::filesystem::path& file) {
+GltfDocument load_gltf(const std::filesystem::path& file, ModelBudget& budget) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  check_header(file, bytes);
-  std::string folder = file.parent_path().string();
-  if (folder.empty()) folder = ".";
+  budget.need(2 * bytes.size(), file.string());  // the file, and what the parser copies of it
+  check_gltf(file, bytes);
 
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);
@@ -98,6 +72,7 @@ GltfDocument load_gltf(const std::filesystem::path& file) {
   files.ExpandFilePath = [](const std::string& path, void*) { return path; };
   files.ReadWholeFile = &read_beside;
   files.WriteWholeFile = nullptr;
+  Folder folder{file};
   files.user_data = &folder;
   parser.SetFsCallbacks(files);
 
@@ -108,12 +83,12 @@ GltfDocument load_gltf(const std::filesystem::path& file) {
   bool read = false;
   try {
     const auto size = static_cast<unsigned int>(bytes.size());
-    read = is_binary(bytes)
+    read = is_binary_gltf(bytes)
                ? parser.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size,
-                                             folder, tinygltf::REQUIRE_VERSION)
+                                             /*base_dir=*/{}, tinygltf::REQUIRE_VERSION)
                : parser.LoadASCIIFromString(&document.model, &error, &warning,
                                             reinterpret_cast<const char*>(bytes.data()), size,
-                                            folder, tinygltf::REQUIRE_VERSION);
+                                            /*base_dir=*/{}, tinygltf::REQUIRE_VERSION);
   } catch (const std::exception& e) {
     error += e.what();
   }

@@ -7,6 +7,8 @@
 
 #include <tiny_gltf.h>
 
+#include "model_budget.h"
+
 namespace atrium::scene {
 
 /// A parsed glTF file. Its structure is what the JSON says: indices are not checked yet.
@@ -22,8 +24,9 @@ struct GltfDocument {
 };
 
 /// Reads .gltf and .glb with external buffers and data URIs. Images stay encoded.
-/// \throws Error for anything that is no glTF 2.0 or lacks a buffer.
-[[nodiscard]] GltfDocument load_gltf(const std::filesystem::path& file);
+/// \throws Error for anything that is no glTF 2.0 or lacks a buffer; RuntimeFailure beyond the
+/// memory limit.
+[[nodiscard]] GltfDocument load_gltf(const std::filesystem::path& file, ModelBudget& budget);
 
 /// A model as a binary file: its first buffer, and images that are views of it.
 /// \throws RuntimeFailure.

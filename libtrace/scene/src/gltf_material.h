@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gltf_document.h"
+#include "model_budget.h"
 #include "scene/scene_io.h"
 
 namespace atrium::scene {
@@ -13,7 +14,8 @@ namespace atrium::scene {
 class GltfTextures {
  public:
   /// Decodes everything that the document's materials name; failures become warnings.
-  GltfTextures(const GltfDocument& document, Model& model);
+  /// \throws RuntimeFailure  beyond the memory limit.
+  GltfTextures(const GltfDocument& document, Model& model, ModelBudget& budget);
   /// Invalid if the texture was not named, or could not be decoded.
   [[nodiscard]] material::TextureId find(int texture, bool srgb) const;
 

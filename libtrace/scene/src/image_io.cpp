@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "image_io_module.h"
+#include "import_util.h"
 #include "material/error.h"
 #include "module.h"
 #include "pfm.h"
@@ -60,16 +61,6 @@ Loader& loader() {
   return instance;
 }
 
-std::vector<std::uint8_t> read_bytes(const fs::path& file) {
-  std::error_code ec;
-  if (fs::is_directory(file, ec)) throw Error(file.string() + ": cannot be read: is a folder");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string() + ": cannot be read");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) throw Error(file.string() + ": cannot be read");
-  return bytes;
-}
-
 enum class Format { Unknown, Exr, Hdr, Pfm, Display };
 
 Format format_of(const fs::path& file) {
@@ -105,16 +96,24 @@ bool image_io_available() {
   }
 }
 
+std::uint64_t texture_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+  material::Texture texture;
+  const std::string problem = loader().get().measure(bytes.data(), bytes.size(), texture);
+  if (!problem.empty()) throw Error(name + ": is no readable image: " + problem);
+  return static_cast<std::uint64_t>(texture.width) * static_cast<std::uint64_t>(texture.height) *
+         static_cast<std::uint64_t>(texture.channels);
+}
+
 material::Texture decode_texture(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   material::Texture texture;
-  const std::string problem = loader().get().decode(bytes.data(), bytes.size(), name, texture);
+  const std::string problem = loader().get().decode(bytes.data(), bytes.size(), texture);
   if (!problem.empty()) throw Error(name + ": is no readable image: " + problem);
   texture.name = name;
   return texture;
 }
 
 material::Texture read_texture(const fs::path& file) {
-  return decode_texture(read_bytes(file), file.string());
+  return decode_texture(read_file_bytes(file), file.string());
 }
 
 std::vector<std::uint8_t> encode_texture(const material::Texture& texture,

@@ -6,23 +6,23 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "module.h"
+#include "scene/limits.h"
 
 namespace atrium::scene {
 namespace {
-
-// A file may claim any size; 2^28 values (256 MB as bytes, 1 GB as floats) is a 16k x 4k RGBA
-// image.
-constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 28;
 
 std::string one_line(std::string message) {
   while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) {
@@ -32,33 +32,40 @@ std::string one_line(std::string message) {
   return message.empty() ? "unknown error" : message;
 }
 
-std::string check_size(const OIIO::ImageSpec& spec) {
+/// A file may claim any size, so what it says is compared with what it can hold.
+std::string check_size(const OIIO::ImageSpec& spec, std::uint64_t file_bytes) {
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1) {
     return "is no two-dimensional image";
   }
   const std::uint64_t values = static_cast<std::uint64_t>(spec.width) *
                                static_cast<std::uint64_t>(spec.height) *
                                static_cast<std::uint64_t>(spec.nchannels);
-  if (values > kMaxValues) return "is larger than can be read";
+  if (values > limits::kImageValues || values / limits::kValuesPerByte > file_bytes) {
+    return "its size, " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+           " pixels of " + std::to_string(spec.nchannels) +
+           " values, is larger than can be read or than its " + std::to_string(file_bytes) +
+           " bytes can hold";
+  }
   return {};
 }
 
-bool starts_with(const std::uint8_t* bytes, std::size_t size, std::initializer_list<int> magic) {
-  if (size < magic.size()) return false;
-  std::size_t i = 0;
-  for (const int m : magic) {
-    if (bytes[i++] != m) return false;
-  }
-  return true;
+bool starts_with(const std::uint8_t* bytes, std::size_t size, std::string_view magic) {
+  return size >= magic.size() && std::memcmp(bytes, magic.data(), magic.size()) == 0;
 }
 
-/// Embedded images often have no ending, or a wrong one: the content decides where it can.
-std::string format_name(const std::uint8_t* bytes, std::size_t size, const std::string& name) {
-  if (starts_with(bytes, size, {0x89, 'P', 'N', 'G'})) return "image.png";
-  if (starts_with(bytes, size, {0xff, 0xd8, 0xff})) return "image.jpg";
-  if (starts_with(bytes, size, {0x76, 0x2f, 0x31, 0x01})) return "image.exr";
-  return name;
+/// OpenImageIO's name of the format; empty for what is not read. Asked to choose for itself, it
+/// tries some forty parsers one after the other.
+std::string format_of(const std::uint8_t* bytes, std::size_t size) {
+  using namespace std::string_view_literals;
+  if (starts_with(bytes, size, "\x89PNG"sv)) return "png";
+  if (starts_with(bytes, size, "\xff\xd8\xff"sv)) return "jpeg";
+  if (starts_with(bytes, size, "\x76\x2f\x31\x01"sv)) return "openexr";
+  if (starts_with(bytes, size, "#?"sv)) return "hdr";
+  if (starts_with(bytes, size, "II*\0"sv) || starts_with(bytes, size, "MM\0*"sv)) return "tiff";
+  return {};
 }
+constexpr const char* kUnread = "not one of the formats that are read: PNG, JPEG, EXR, HDR, TIFF";
+constexpr std::size_t kMagicBytes = 8;
 
 float decode_srgb(float v) {
   return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
@@ -72,29 +79,30 @@ class OiioModule final : public ImageIoModule {
     OIIO::attribute("exr_threads", -1);
   }
 
-  std::string decode(const std::uint8_t* bytes, std::size_t size, const std::string& name,
+  std::string decode(const std::uint8_t* bytes, std::size_t size,
                      material::Texture& texture) const override try {
     OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes), size);
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    // As an attribute: the parameter of open() is not passed on to the reader in OpenImageIO 2.4.
-    void* proxy = &memory;
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    auto input = OIIO::ImageInput::open(format_name(bytes, size, name), &config);
-    if (!input) return one_line(OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
-    if (std::string problem = check_size(spec); !problem.empty()) return problem;
-    const int channels = std::min(spec.nchannels, 4);
-    texture.width = spec.width;
-    texture.height = spec.height;
-    texture.channels = channels;
-    texture.pixels.resize(static_cast<std::size_t>(spec.width) *
-                          static_cast<std::size_t>(spec.height) *
-                          static_cast<std::size_t>(channels));
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, texture.pixels.data())) {
+    std::string problem;
+    const auto input = open(memory, bytes, size, texture, problem);
+    if (!problem.empty()) return problem;
+    texture.pixels.resize(static_cast<std::size_t>(texture.width) *
+                          static_cast<std::size_t>(texture.height) *
+                          static_cast<std::size_t>(texture.channels));
+    if (!input->read_image(0, 0, 0, texture.channels, OIIO::TypeDesc::UINT8,
+                           texture.pixels.data())) {
       return one_line(input->geterror());
     }
     return {};
+  } catch (const std::exception& e) {
+    return one_line(e.what());
+  }
+
+  std::string measure(const std::uint8_t* bytes, std::size_t size,
+                      material::Texture& texture) const override try {
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes), size);
+    std::string problem;
+    static_cast<void>(open(memory, bytes, size, texture, problem));
+    return problem;
   } catch (const std::exception& e) {
     return one_line(e.what());
   }
@@ -123,10 +131,16 @@ class OiioModule final : public ImageIoModule {
   std::string read(const std::string& file, Image& image) const override try {
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    auto input = OIIO::ImageInput::open(file, &config);
+    std::array<std::uint8_t, kMagicBytes> magic{};
+    std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(magic.data()), magic.size());
+    const std::string format = format_of(magic.data(), magic.size());
+    if (format.empty()) return kUnread;
+    auto input = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec spec;
     if (!input) return one_line(OIIO::geterror());
-    const OIIO::ImageSpec spec = input->spec();
-    if (std::string problem = check_size(spec); !problem.empty()) return problem;
+    if (!input->open(file, spec, config)) return one_line(input->geterror());
+    const std::uint64_t file_bytes = std::filesystem::file_size(file);
+    if (std::string problem = check_size(spec, file_bytes); !problem.empty()) return problem;
     image.width = spec.width;
     image.height = spec.height;
     image.channels = spec.channelnames;
@@ -182,6 +196,32 @@ class OiioModule final : public ImageIoModule {
               static_cast<std::streamsize>(bytes.size()));
     out.close();
     return out ? std::string() : std::string(std::strerror(errno));
+  }
+  /// Sets the texture's size and channels. `problem` is empty if it can be read.
+  static std::unique_ptr<OIIO::ImageInput> open(OIIO::Filesystem::IOMemReader& memory,
+                                                const std::uint8_t* bytes, std::size_t size,
+                                                material::Texture& texture, std::string& problem) {
+    const std::string format = format_of(bytes, size);
+    if (format.empty()) {
+      problem = kUnread;
+      return nullptr;
+    }
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    // As an attribute: the parameter of open() is not passed on to the reader in OpenImageIO 2.4.
+    void* proxy = &memory;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    auto input = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec spec;
+    if (!input || !input->open("image", spec, config)) {
+      problem = one_line(input ? input->geterror() : OIIO::geterror());
+      return nullptr;
+    }
+    problem = check_size(spec, size);
+    texture.width = spec.width;
+    texture.height = spec.height;
+    texture.channels = std::min(spec.nchannels, 4);
+    return input;
   }
 
   static void linearise(const OIIO::ImageSpec& spec, Image& image) {

@@ -16,9 +16,12 @@ class ImageIoModule {
  public:
   virtual ~ImageIoModule() = default;
 
-  /// 8-bit pixels, alpha not multiplied in. `name` tells the format if the content does not.
-  virtual std::string decode(const std::uint8_t* bytes, std::size_t size, const std::string& name,
+  /// 8-bit pixels, alpha not multiplied in. The first bytes tell the format.
+  virtual std::string decode(const std::uint8_t* bytes, std::size_t size,
                              material::Texture& texture) const = 0;
+  /// Size and channels of what decode() would make; no pixels.
+  virtual std::string measure(const std::uint8_t* bytes, std::size_t size,
+                              material::Texture& texture) const = 0;
   /// The 8-bit pixels as they are, in the format of `ending` (".png", ".jpg").
   virtual std::string encode(const material::Texture& texture, const std::string& ending,
                              std::vector<std::uint8_t>& bytes) const = 0;

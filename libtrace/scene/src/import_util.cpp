@@ -1,5 +1,6 @@
 #include "import_util.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -23,6 +24,22 @@ std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& file, std
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!in) throw Error(file.string() + ": cannot be read");
   return bytes;
+}
+
+std::filesystem::path file_beside(const std::filesystem::path& model, const std::string& name) {
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  const std::filesystem::path relative(slashes);
+  const bool climbs = std::any_of(relative.begin(), relative.end(),
+                                  [](const std::filesystem::path& part) { return part == ".."; });
+  const bool drive = (slashes.size() > 1 && slashes[1] == ':') || slashes.starts_with("file:") ||
+                     slashes.find("://") != std::string::npos;
+  if (relative.empty() || relative.has_root_path() || climbs || drive ||
+      slashes.find('\0') != std::string::npos) {
+    throw Error(model.string() + ": '" + name +
+                "' does not lie beside the model or below it (relative path without '..')");
+  }
+  return model.parent_path() / relative;
 }
 
 std::string one_line(const std::string& text) {
@@ -128,13 +145,26 @@ double roughness_to_c(double roughness) {
   return m < 1e-3 ? std::numeric_limits<double>::infinity() : 1.0 / m;
 }
 
-material::TextureId add_texture_file(Model& model, const std::filesystem::path& file, bool srgb) {
+std::uint64_t measure_texture(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   try {
-    material::Texture texture = read_texture(file);
+    return texture_bytes(bytes, name);
+  } catch (const RuntimeFailure& e) {
+    throw Error(e.what());
+  }
+}
+
+material::TextureId add_texture_file(Model& model, ModelBudget& budget,
+                                     const std::filesystem::path& model_file,
+                                     const std::string& name, bool srgb) {
+  try {
+    const std::filesystem::path file = file_beside(model_file, name);
+    const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+    budget.need_texture(measure_texture(bytes, file.string()), file.string());
+    material::Texture texture = decode_texture(bytes, file.string());
     texture.srgb = srgb;
     model.textures.push_back(std::move(texture));
     return material::TextureId{static_cast<std::uint32_t>(model.textures.size() - 1)};
-  } catch (const std::exception& e) {
+  } catch (const Error& e) {
     model.warnings.push_back("texture left out: " + one_line(e.what()));
     return {};
   }

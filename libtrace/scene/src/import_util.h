@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "model_budget.h"
+#include "scene/limits.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 
@@ -12,7 +14,12 @@ namespace atrium::scene {
 
 /// The whole file. \throws Error "FILE: ..." if missing, no regular file, empty or above the limit.
 [[nodiscard]] std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& file,
-                                                        std::uintmax_t limit = 0xFFFFFFFFu);
+                                                        std::uintmax_t limit = limits::kFileBytes);
+
+/// The file that a model names, by a path that uses / or \\: beside it or below.
+/// \throws Error "FILE: ..." for absolute paths, drives, `..` and names that are none.
+[[nodiscard]] std::filesystem::path file_beside(const std::filesystem::path& model,
+                                                const std::string& name);
 
 /// Line breaks become "; ", trailing ones vanish: messages of parsers fit on one line.
 [[nodiscard]] std::string one_line(const std::string& text);
@@ -47,8 +54,14 @@ void set_thin_sheet(material::Material& material, double t, const Rgb& tint, con
 [[nodiscard]] double unit_range(double value);
 [[nodiscard]] Rgb unit_range(const Rgb& value);
 
-/// Reads a texture into the model. \return invalid, with a warning in the model, if that fails.
-[[nodiscard]] material::TextureId add_texture_file(Model& model, const std::filesystem::path& file,
-                                                   bool srgb);
+/// texture_bytes(), but a build that cannot read images at all is an Error, too: models do without.
+[[nodiscard]] std::uint64_t measure_texture(const std::vector<std::uint8_t>& bytes,
+                                            const std::string& name);
+
+/// Reads a texture that a model names. \return invalid, with a warning in the model, if that fails
+/// or the file lies elsewhere (file_beside()).
+[[nodiscard]] material::TextureId add_texture_file(Model& model, ModelBudget& budget,
+                                                   const std::filesystem::path& model_file,
+                                                   const std::string& name, bool srgb);
 
 }  // namespace atrium::scene

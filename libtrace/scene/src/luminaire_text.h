@@ -10,7 +10,8 @@ inline constexpr double kMostCandela = 1e30;
 /// Angles closer than this are the same [deg].
 inline constexpr double kLeastStep = 1e-6;
 
-/// The whole of a luminaire file. \throws Error  if it is missing or larger than 64 MiB.
+/// The whole of a luminaire file. \throws Error  if it is missing or larger than
+/// limits::kTableBytes.
 [[nodiscard]] std::string read_luminaire_text(const std::filesystem::path& file);
 
 }  // namespace atrium::scene

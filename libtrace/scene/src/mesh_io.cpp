@@ -1,7 +1,6 @@
 #include "scene/mesh_io.h"
 
 #include <algorithm>
-#include <fstream>
 #include <numeric>
 #include <stdexcept>
 
@@ -85,10 +84,7 @@ void write_polygon_mesh(const PolygonMesh& mesh, const std::filesystem::path& fi
 MeshFileSummary summarise_mesh_file(const std::filesystem::path& file) {
   if (!is_mesh_ending(file))
     throw Error(file.string() + ": unknown mesh format (known: .vtp .vtu)");
-  std::error_code ec;
-  if (std::filesystem::is_directory(file, ec))
-    throw Error(file.string() + ": cannot be read: is a folder");
-  if (!std::ifstream(file, std::ios::binary)) throw Error(file.string() + ": cannot be read");
+  check_mesh_file(file);
   MeshFileSummary summary;
   const std::string problem = module().summarise(file.string(), summary);
   if (!problem.empty()) throw Error(file.string() + ": " + problem);

@@ -11,13 +11,11 @@ namespace {
 
 using material::Material;
 
-material::TextureSlot slot(const MtlMaterial::Map& map, const std::filesystem::path& folder,
-                           bool srgb, Model& model) {
+material::TextureSlot slot(const MtlMaterial::Map& map, const std::filesystem::path& file,
+                           bool srgb, Model& model, ModelBudget& budget) {
   material::TextureSlot out;
   if (map.file.empty()) return out;
-  std::string name = map.file;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  out.texture = add_texture_file(model, folder / name, srgb);
+  out.texture = add_texture_file(model, budget, file, map.file, srgb);
   if (!out.texture.valid()) return out;
   // -s and -o act on (u, v) with v upwards; our v runs downwards: v' = 1 - (s (1 - v) + o).
   out.scale = Vec2f(static_cast<float>(map.scale[0]), static_cast<float>(map.scale[1]));
@@ -83,14 +81,14 @@ void map_opaque(const MtlMaterial& s, Material& m) {
 
 }  // namespace
 
-material::Material obj_material(const MtlMaterial& s, const std::filesystem::path& folder,
-                                const ReadOptions& options, Model& model) {
+material::Material obj_material(const MtlMaterial& s, const std::filesystem::path& file,
+                                const ReadOptions& options, Model& model, ModelBudget& budget) {
   Material m;
   m.name = s.name;
   m.k_df = 1.0;
   m.k_rg = 0.0;
   m.body_reflectance = spectral(unit_range(s.kd));
-  m.body_texture = slot(s.map_kd, folder, true, model);
+  m.body_texture = slot(s.map_kd, file, true, model, budget);
   // Kd 0 beside map_Kd is common; the texture alone is meant then.
   if (m.body_texture.texture.valid() && s.kd.is_zero()) m.body_reflectance = 1.0;
   if (transmits(s)) {
@@ -99,7 +97,7 @@ material::Material obj_material(const MtlMaterial& s, const std::filesystem::pat
     map_opaque(s, m);
   }
   if (!s.map_d.file.empty()) {
-    m.alpha_texture = slot(s.map_d, folder, false, model);
+    m.alpha_texture = slot(s.map_d, file, false, model, budget);
     if (m.alpha_texture.texture.valid()) {
       m.alpha_cutoff = 0.5f;
       m.alpha_texture.channel = model.textures[m.alpha_texture.texture.value].channels == 4 ? 3 : 0;
@@ -107,11 +105,11 @@ material::Material obj_material(const MtlMaterial& s, const std::filesystem::pat
   }
   const Rgb emission = s.ke * static_cast<float>(options.emissive_nits_per_unit);
   if (!(emission.is_finite() && emission.min() >= 0.0f)) {
-    throw Error((folder / s.name).string() + ": Ke must be finite and not negative");
+    throw Error(file.string() + ": material '" + s.name + "': Ke must be finite and not negative");
   }
   if (!emission.is_zero()) {
     m.emission = spectral(emission);
-    m.emission_texture = slot(s.map_ke, folder, true, model);
+    m.emission_texture = slot(s.map_ke, file, true, model, budget);
     m.emits_both_sides = false;
   }
   return m;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "model_budget.h"
 #include "scene/scene_io.h"
 
 namespace atrium::scene {
@@ -26,9 +27,11 @@ struct MtlMaterial {
   Map map_kd, map_ke, map_d;
 };
 
-/// Maps as docs/gltf_mapping.md says (section OBJ). Textures are looked for in `folder`.
+/// Maps as docs/gltf_mapping.md says (section OBJ). Textures lie beside `file`, the model, or
+/// below.
 [[nodiscard]] material::Material obj_material(const MtlMaterial& source,
-                                              const std::filesystem::path& folder,
-                                              const ReadOptions& options, Model& model);
+                                              const std::filesystem::path& file,
+                                              const ReadOptions& options, Model& model,
+                                              ModelBudget& budget);
 
 }  // namespace atrium::scene

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "gltf_accessor.h"
@@ -10,6 +13,7 @@
 #include "gltf_nodes.h"
 #include "import_util.h"
 #include "material/error.h"
+#include "scene/limits.h"
 #include "scene/scene_io.h"
 
 namespace atrium::scene {
@@ -59,7 +63,13 @@ std::vector<Triangle> triangles_of(const std::vector<std::uint32_t>& v, int mode
 class Reader {
  public:
   Reader(Model& model, const std::filesystem::path& file, const ReadOptions& options)
-      : model_(model), options_(options), document_(load_gltf(file)) {}
+      : model_(model),
+        options_(options),
+        budget_(model, options),
+        document_(load_gltf(file, budget_)) {
+    for (const tinygltf::Buffer& buffer : document_.model.buffers)
+      reads_left_ += limits::kReadsPerByte * buffer.data.size();
+  }
   void read();
 
  private:
@@ -67,10 +77,20 @@ class Reader {
   MaterialId material_id(int index);
   MeshId mesh_id(int mesh, std::size_t primitive);
   MeshData read_primitive(const tinygltf::Primitive& primitive, const std::string& where);
+  /// Which elements of its attributes a primitive uses: all, or `used`.
+  struct Vertices {
+    std::size_t count = 0;  ///< of each attribute
+    std::optional<std::vector<std::uint32_t>> used;
+    [[nodiscard]] const std::vector<std::uint32_t>* only() const { return used ? &*used : nullptr; }
+  };
   template <int N>
   std::vector<Eigen::Matrix<float, N, 1>> attribute(const tinygltf::Primitive& primitive,
-                                                    const std::string& name, std::size_t vertices);
-  std::vector<Vec3f> colors(const tinygltf::Primitive& primitive, std::size_t vertices);
+                                                    const std::string& name,
+                                                    const Vertices& vertices);
+  std::vector<Vec3f> colors(const tinygltf::Primitive& primitive, const Vertices& vertices);
+  std::vector<std::uint32_t> indexed_corners(const tinygltf::Primitive& primitive,
+                                             Vertices& vertices);
+  void charge(std::uint64_t numbers, const std::string& where);
   void place_mesh(const tinygltf::Node& node, const Eigen::Affine3d& to_world);
   void place_camera(const tinygltf::Node& node, const Eigen::Affine3d& to_world);
   void place_light(const tinygltf::Node& node, const Eigen::Affine3d& to_world);
@@ -78,34 +98,47 @@ class Reader {
 
   Model& model_;
   const ReadOptions& options_;
+  ModelBudget budget_;
   GltfDocument document_;
+  std::uint64_t reads_left_ = 8 * limits::kElementsWithoutData;  ///< numbers, with kReadsPerByte
   std::size_t first_material_ = 0;
   MaterialId default_material_;
   std::map<std::pair<int, std::size_t>, MeshId> meshes_;
 };
 
+/// Many primitives may share one buffer, but not without end.
+void Reader::charge(std::uint64_t numbers, const std::string& where) {
+  if (numbers > reads_left_)
+    throw Error(document_.at(where + ": too many primitives read the same buffers (more than " +
+                             std::to_string(limits::kReadsPerByte) + " numbers per byte)"));
+  reads_left_ -= numbers;
+  budget_.need(numbers * sizeof(float), document_.at(where));
+}
+
 template <int N>
 std::vector<Eigen::Matrix<float, N, 1>> Reader::attribute(const tinygltf::Primitive& primitive,
                                                           const std::string& name,
-                                                          std::size_t vertices) {
+                                                          const Vertices& vertices) {
   const auto it = primitive.attributes.find(name);
   if (it == primitive.attributes.end()) return {};
-  const std::vector<float> values = gltf_attribute(document_, it->second, N);
+  const std::size_t count = gltf_count(document_, it->second);
+  if (count != vertices.count) {
+    warn(name + " (accessor " + std::to_string(it->second) + ") has " + std::to_string(count) +
+         " elements for " + std::to_string(vertices.count) + " vertices and is ignored");
+    return {};
+  }
+  charge((vertices.used ? vertices.used->size() : count) * N, name);
+  const std::vector<float> values = gltf_attribute(document_, it->second, N, vertices.only());
   std::vector<Eigen::Matrix<float, N, 1>> out(values.size() / static_cast<std::size_t>(N));
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (int k = 0; k < N; ++k)
       out[i][k] = values[i * static_cast<std::size_t>(N) + static_cast<std::size_t>(k)];
   }
-  if (out.size() != vertices) {
-    warn(name + " (accessor " + std::to_string(it->second) + ") has " + std::to_string(out.size()) +
-         " elements for " + std::to_string(vertices) + " vertices and is ignored");
-    return {};
-  }
   return out;
 }
 
 /// COLOR_0 is linear, RGB or RGBA; white everywhere is the same as none.
-std::vector<Vec3f> Reader::colors(const tinygltf::Primitive& primitive, std::size_t vertices) {
+std::vector<Vec3f> Reader::colors(const tinygltf::Primitive& primitive, const Vertices& vertices) {
   const auto it = primitive.attributes.find("COLOR_0");
   if (it == primitive.attributes.end()) return {};
   if (gltf_components(document_, it->second) == 3)
@@ -114,6 +147,23 @@ std::vector<Vec3f> Reader::colors(const tinygltf::Primitive& primitive, std::siz
   std::vector<Vec3f> out(rgba.size());
   for (std::size_t i = 0; i < rgba.size(); ++i) out[i] = rgba[i].head<3>();
   return out;
+}
+
+/// Indices of the corners. Where most vertices belong to other primitives, only the used ones are
+/// kept, in their order.
+std::vector<std::uint32_t> Reader::indexed_corners(const tinygltf::Primitive& primitive,
+                                                   Vertices& vertices) {
+  charge(gltf_count(document_, primitive.indices), "indices");
+  std::vector<std::uint32_t> corners = gltf_indices(document_, primitive.indices, vertices.count);
+  if (corners.size() >= vertices.count) return corners;
+  std::vector<std::uint32_t> used = corners;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  if (used.size() > vertices.count / 2) return corners;
+  for (std::uint32_t& c : corners)
+    c = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), c) - used.begin());
+  vertices.used = std::move(used);
+  return corners;
 }
 
 MeshData Reader::read_primitive(const tinygltf::Primitive& primitive, const std::string& where) {
@@ -132,25 +182,22 @@ MeshData Reader::read_primitive(const tinygltf::Primitive& primitive, const std:
     warn(where + ": has no POSITION and is ignored");
     return mesh;
   }
-  const std::vector<float> xyz = gltf_attribute(document_, position->second, 3);
-  const std::size_t vertices = xyz.size() / 3;
-  mesh.positions.resize(vertices);
-  for (std::size_t i = 0; i < vertices; ++i) {
-    mesh.positions[i] = Vec3f(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<double>();
+  Vertices vertices{gltf_count(document_, position->second), {}};
+  if (vertices.count > std::numeric_limits<std::uint32_t>::max() - 1)
+    throw Error(document_.at(where + ": " + std::to_string(vertices.count) + " vertices"));
+  std::vector<std::uint32_t> corners;
+  if (primitive.indices >= 0) corners = indexed_corners(primitive, vertices);
+  for (const Vec3f& p : attribute<3>(primitive, "POSITION", vertices))
+    mesh.positions.push_back(p.cast<double>());
+  if (primitive.indices < 0) {
+    corners.resize(mesh.positions.size());
+    std::iota(corners.begin(), corners.end(), 0u);
   }
   mesh.normals = attribute<3>(primitive, "NORMAL", vertices);
   mesh.uvs = attribute<2>(primitive,
                           "TEXCOORD_" + std::to_string(gltf_uv_set(document_, primitive.material)),
                           vertices);
   mesh.colors = colors(primitive, vertices);
-
-  std::vector<std::uint32_t> corners;
-  if (primitive.indices >= 0) {
-    corners = gltf_indices(document_, primitive.indices, vertices);
-  } else {
-    corners.resize(vertices);
-    for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::uint32_t>(i);
-  }
   if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0) {
     warn(where + ": " + std::to_string(corners.size()) +
          " corners are not whole triangles, the rest is dropped");
@@ -170,6 +217,7 @@ MeshId Reader::mesh_id(int mesh, std::size_t primitive) {
   MeshData data = read_primitive(source.primitives[primitive], where);
   MeshId id;
   if (!data.triangles.empty()) {
+    budget_.need(bytes_of(data), document_.at(where));
     id = MeshId(model_.meshes.size());
     model_.meshes.push_back(std::move(data));
   }
@@ -180,7 +228,7 @@ MeshId Reader::mesh_id(int mesh, std::size_t primitive) {
 // ---- materials ----
 
 void Reader::read_materials() {
-  const GltfTextures textures(document_, model_);
+  const GltfTextures textures(document_, model_, budget_);
   first_material_ = model_.materials.size();
   for (std::size_t i = 0; i < document_.model.materials.size(); ++i) {
     model_.materials.push_back(
@@ -220,6 +268,9 @@ void Reader::place_mesh(const tinygltf::Node& node, const Eigen::Affine3d& to_wo
     out.mesh = id;
     out.material = material;
     out.to_world = to_world;
+    if (model_.nodes.size() >= limits::kPlaced)
+      throw Error(document_.at("more than " + std::to_string(limits::kPlaced) +
+                               " objects (primitives of nodes)"));
     model_.nodes.push_back(std::move(out));
   }
 }

@@ -1,28 +1,22 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <optional>
-#include <sstream>
 
+#include "import_util.h"
 #include "luminaire_text.h"
 #include "material/error.h"
+#include "scene/limits.h"
 #include "scene/luminaire.h"
 
 namespace atrium::scene {
 
 std::string read_luminaire_text(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kMaxFileBytes = 64u << 20;
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-  if (error) throw Error(file.string() + ": cannot be read");
-  if (bytes > kMaxFileBytes) throw Error(file.string() + ": too large for a luminaire file");
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (bytes > 0) text << in.rdbuf();
-  if (!in) throw Error(file.string() + ": cannot be read");
-  return text.str();
+  std::error_code code;
+  if (std::filesystem::is_empty(file, code)) return {};  // its first line is missing
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file, limits::kTableBytes);
+  return {bytes.begin(), bytes.end()};
 }
 
 namespace {

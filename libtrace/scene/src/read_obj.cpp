@@ -18,23 +18,19 @@
 namespace atrium::scene {
 namespace {
 
-constexpr std::size_t kMostCorners = 100'000;  // of one face
-
 /// The parser's reader dereferences the first material: an empty file counts as missing.
 class MaterialFiles : public tinyobj::MaterialReader {
  public:
-  explicit MaterialFiles(const std::filesystem::path& folder) : folder_(folder) {}
+  explicit MaterialFiles(const std::filesystem::path& model) : model_(model) {}
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* ids, std::string* warning, std::string*) override {
-    std::string path = name;
-    std::replace(path.begin(), path.end(), '\\', '/');
-    std::error_code code;
-    const std::filesystem::path file = folder_ / path;
-    if (!std::filesystem::is_regular_file(file, code)) {
-      *warning += "material file '" + path + "' is missing; ";
+    std::vector<std::uint8_t> bytes;
+    try {
+      bytes = read_file_bytes(file_beside(model_, name));
+    } catch (const Error& e) {
+      *warning += "material file left out: " + std::string(e.what()) + "; ";
       return false;
     }
-    const std::vector<std::uint8_t> bytes = read_file_bytes(file);
     std::istringstream stream(std::string(bytes.begin(), bytes.end()));
     std::string error;
     tinyobj::LoadMtl(ids, materials, &stream, warning, &error);
@@ -43,7 +39,7 @@ class MaterialFiles : public tinyobj::MaterialReader {
   }
 
  private:
-  std::filesystem::path folder_;
+  std::filesystem::path model_;
 };
 
 Rgb rgb(const tinyobj::real_t* v) { return make_rgb(v[0], v[1], v[2]); }
@@ -134,7 +130,7 @@ struct Part {
 class ObjReader {
  public:
   ObjReader(Model& model, const std::filesystem::path& file, const ReadOptions& options)
-      : model_(model), file_(file), options_(options) {}
+      : model_(model), file_(file), options_(options), budget_(model, options) {}
   void read();
 
  private:
@@ -154,6 +150,7 @@ class ObjReader {
   Model& model_;
   const std::filesystem::path file_;
   const ReadOptions& options_;
+  ModelBudget budget_;
   std::vector<Vec3d> positions_;
   std::vector<Vec3f> colors_;
   std::vector<Vec3f> normals_;
@@ -214,7 +211,7 @@ void ObjReader::add_face(const tinyobj::index_t* corners, std::size_t count) {
     ++small_faces_;
     return;
   }
-  if (count > kMostCorners)
+  if (count > limits::kPolygonCorners)
     throw Error(at("face " + std::to_string(faces_) + " has too many corners"));
   Part& part = current_part();
   std::vector<Vec3d> outline(count);
@@ -243,7 +240,8 @@ material::Material ObjReader::missing_material() {
     std::filesystem::path image = file_;
     image.replace_extension(ending);
     if (!std::filesystem::is_regular_file(image)) continue;
-    m.body_texture.texture = add_texture_file(model_, image, true);
+    m.body_texture.texture =
+        add_texture_file(model_, budget_, file_, image.filename().string(), true);
     if (m.body_texture.texture.valid()) {
       m.body_reflectance = 1.0;
       model_.warnings.push_back(at("no material; the image " + image.filename().string() +
@@ -259,7 +257,7 @@ MaterialId ObjReader::material_id(int index) {
   if (known != material_ids_.end()) return known->second;
   material::Material m;
   if (index >= 0 && static_cast<std::size_t>(index) < mtl_.size()) {
-    m = obj_material(mtl_[static_cast<std::size_t>(index)], file_.parent_path(), options_, model_);
+    m = obj_material(mtl_[static_cast<std::size_t>(index)], file_, options_, model_, budget_);
   } else {
     m = missing_material();
     if (!m.body_texture.texture.valid()) {
@@ -281,6 +279,7 @@ void ObjReader::finish() {
     Model::Node node;
     node.name = part.mesh.name;
     node.material = material_id(part.material);
+    budget_.need(bytes_of(part.mesh), at("geometry"));
     node.mesh = MeshId(model_.meshes.size());
     model_.meshes.push_back(std::move(part.mesh));
     model_.nodes.push_back(std::move(node));
@@ -326,7 +325,7 @@ void ObjReader::parse(const std::string& text) {
     self(d).current_ = kNoPart;
   };
   std::istringstream stream(text);
-  MaterialFiles files(file_.parent_path());
+  MaterialFiles files(file_);
   std::string warning;
   std::string error;
   if (!tinyobj::LoadObjWithCallback(stream, on, this, &files, &warning, &error)) {
@@ -352,6 +351,7 @@ std::size_t count_lines_and_points(std::string_view text) {
 
 void ObjReader::read() {
   const std::vector<std::uint8_t> bytes = read_file_bytes(file_);
+  budget_.need(2 * bytes.size(), at("text"));
   const std::string text(bytes.begin(), bytes.end());
   if (text.find('\0') != std::string::npos) throw Error(at("is no text: not an OBJ file"));
   colors_ = vertex_colors(text);

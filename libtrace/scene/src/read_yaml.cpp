@@ -39,7 +39,17 @@ void read_cameras(Model& model, const YamlView& list) {
 
 void read_yaml(Model& model, const std::filesystem::path& file, const ReadOptions& options) {
   const YamlNode tree = load_yaml(file);
-  YamlScene scene{model, options, file.string(), RadianceUnit::Nit, {}, {}, {}, {}, {}, {}};
+  YamlScene scene{model,
+                  options,
+                  file.string(),
+                  RadianceUnit::Nit,
+                  {},
+                  {},
+                  {},
+                  {},
+                  {},
+                  {},
+                  ModelBudget(model, options)};
   const YamlMap top = YamlView(tree, scene.file)
                           .map("scene", {"atrium", "description", "unit", "spectra", "materials",
                                          "groups", "objects", "lights", "cameras", "environment",

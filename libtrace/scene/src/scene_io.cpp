@@ -22,7 +22,8 @@ void read_into(Model& model, const std::filesystem::path& file, const ReadOption
   const std::string ending = lower_ending(file);
   if (ending == ".glb" || ending == ".gltf") return read_gltf(model, file, options);
   if (ending == ".obj") return read_obj(model, file, options);
-  if (ending == ".ply" || ending == ".stl") return read_mesh_file(model, file, options);
+  if (ending == ".ply") return read_ply(model, file, options);
+  if (ending == ".stl") return read_stl(model, file, options);
   if (ending == ".yaml" || ending == ".yml") return read_yaml(model, file, options);
   throw Error(file.string() + ": unknown format '" + ending +
               "' (known: .glb .gltf .obj .ply .stl .yaml .yml)");

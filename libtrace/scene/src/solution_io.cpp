@@ -3,8 +3,11 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <span>
 
 #include "hash64.h"
+#include "import_util.h"
 #include "material/error.h"
 #include "scene/archive.h"
 #include "scene/output_file.h"
@@ -104,6 +107,8 @@ void field(Archive& a, Field& f) {
 bool nodes_consistent(const SurfaceField& f) {
   std::uint64_t blocks_begin = 0;
   for (const SurfaceField::Facet& facet : f.facets) {
+    if (!facet.origin.allFinite() || !facet.axis_u.allFinite() || !facet.axis_v.allFinite())
+      return false;
     if (facet.nx == 0 || facet.ny == 0 || facet.nx > 1U << 16 || facet.ny > 1U << 16) return false;
     blocks_begin = std::max(blocks_begin, facet.first_cell + std::uint64_t{facet.nx} * facet.ny);
   }
@@ -174,13 +179,14 @@ bool consistent(const SurfaceField& f) {
   for (const SurfaceField::Quantities* q : {&f.irradiance, &f.body_irradiance}) {
     ok = ok && sized(q->direct, values) && sized(q->caustic, values) && sized(q->indirect, values);
   }
-  return ok && sized(f.standard_error, n * 2) && (f.valid.empty() || f.valid.size() == n * 2);
+  return ok && sized(f.standard_error, n * 2) && f.valid.size() == n * 2;
 }
 
 /// Groups are of the field's elements, and all of them can be told apart.
 bool consistent(const std::vector<GroupField>& groups, const SurfaceField& f) {
   const std::size_t sides = f.element_count() * 2;
   const std::size_t values = sides * static_cast<std::size_t>(f.lanes);
+  if (groups.size() > kMostLightGroups) return false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const SurfaceField::Quantities* q : {&groups[g].irradiance, &groups[g].body_irradiance})
       for (const std::vector<float>* v : {&q->direct, &q->caustic, &q->indirect})
@@ -198,14 +204,6 @@ std::uint64_t checksum(const char* data, std::size_t size) {
   Hash64 h;
   h.bytes(data, size);
   return h.result();
-}
-
-std::vector<char> read_all(const fs::path& file) {
-  std::error_code ec;
-  if (fs::is_directory(file, ec)) throw Error(file.string() + ": cannot be read: is a folder");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -232,7 +230,9 @@ void write_solution(const Solution& solution, const fs::path& file) {
 }
 
 Solution read_solution(const fs::path& file) {
-  const std::vector<char> bytes = read_all(file);
+  const std::vector<std::uint8_t> whole =
+      read_file_bytes(file, std::numeric_limits<std::uintmax_t>::max());
+  const std::span bytes(reinterpret_cast<const char*>(whole.data()), whole.size());
   const std::string name = file.string();
   constexpr std::size_t kHead = sizeof kMagic + sizeof kVersion;
   if (bytes.size() < kHead || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) {

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "material/error.h"
+#include "scene/limits.h"
 
 #ifdef ATRIUM_WITH_OPENSUBDIV
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
@@ -34,14 +35,21 @@ void check_cage(const MeshData& mesh) {
     if (size != 3 && cage.scheme == SubdivisionCage::Scheme::Loop) {
       throw Error(name_of(mesh) + ": Loop's scheme takes triangles only");
     }
+    if (size > limits::kCageCorners)
+      throw Error(name_of(mesh) + ": a face has more than " + std::to_string(limits::kCageCorners) +
+                  " corners");
     corners += size;
   }
   if (corners == 0 || corners != cage.face_indices.size()) {
     throw Error(name_of(mesh) + ": face sizes and indices disagree");
   }
+  std::vector<std::uint32_t> faces_round(points, 0);
   for (const std::uint32_t index : cage.face_indices) {
     if (index >= points)
       throw Error(name_of(mesh) + ": a face refers to a point that is not there");
+    if (++faces_round[index] > limits::kCageCorners)
+      throw Error(name_of(mesh) + ": more than " + std::to_string(limits::kCageCorners) +
+                  " faces meet in a point");
   }
   for (const SubdivisionCage::Crease& crease : cage.creases) {
     if (crease.a >= points || crease.b >= points || !(crease.sharpness >= 0.0f)) {

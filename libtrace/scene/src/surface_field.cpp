@@ -26,8 +26,12 @@ GridPlace place(const SurfaceField& field, const Scene& scene, ObjectId object,
   return place(field.facets[f], position);
 }
 
+/// x truncated, in [0, most]; 0 for what is no number: in this order of arguments max() takes 0.
+std::uint32_t truncated(float x, float most) {
+  return static_cast<std::uint32_t>(std::min(std::max(0.0f, x), most));
+}
 std::uint32_t cell_coordinate(float x, std::uint32_t n) {
-  return static_cast<std::uint32_t>(std::clamp(x, 0.0f, static_cast<float>(n - 1)));
+  return truncated(x, static_cast<float>(n - 1));
 }
 
 /// The leaf that a place lies in: an element or kNone.
@@ -97,6 +101,9 @@ std::uint32_t nearest_element(const SurfaceField& field, const GridPlace& p) {
   return here != kNone ? here : NearestLeaf(field, p).find();
 }
 
+/// Above all coordinates of grids (2^16 cells, divided 12 times).
+constexpr float kBeyondGrids = 1e9f;
+
 class StencilMaker {
  public:
   StencilMaker(const SurfaceField& field, const SurfaceField::Facet& facet, Side side,
@@ -107,8 +114,8 @@ class StencilMaker {
   /// \returns false if none of them has a valid element.
   bool add_block(int level, float x, float y, float weight) {
     // Truncation of what is not negative: std::floor() is a call on the oldest processors.
-    const auto ix = static_cast<std::int64_t>(std::max(x + 0.5f, 0.0f)) - 1;
-    const auto iy = static_cast<std::int64_t>(std::max(y + 0.5f, 0.0f)) - 1;
+    const std::int64_t ix = std::int64_t{truncated(x + 0.5f, kBeyondGrids)} - 1;
+    const std::int64_t iy = std::int64_t{truncated(y + 0.5f, kBeyondGrids)} - 1;
     const float wx = x - 0.5f - static_cast<float>(ix);
     const float wy = y - 0.5f - static_cast<float>(iy);
     std::array<SurfaceField::Cell, 4> cells;

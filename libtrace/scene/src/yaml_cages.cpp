@@ -1,11 +1,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
 
+#include "import_util.h"
 #include "material/error.h"
 #include "yaml_shapes.h"
 
@@ -18,7 +18,7 @@ void add_face(SubdivisionCage& cage, std::initializer_list<std::uint32_t> corner
 }
 
 // A box whose sides are divided; `divide` gives the number of faces along x, y, z.
-void cage_of_box(const YamlView& view, MeshData& mesh) {
+void cage_of_box(const YamlView& view, MeshData& mesh, std::size_t& corners_left) {
   const YamlMap map = view.map("box", {"min", "max", "size", "center", "divide"});
   const Box box = read_extent(map);
   std::array<int, 3> n = {1, 1, 1};
@@ -27,6 +27,8 @@ void cage_of_box(const YamlView& view, MeshData& mesh) {
     if (items.size() != 3) divide->fail("expected three whole numbers");
     for (std::size_t i = 0; i < 3; ++i) n[i] = items[i].integer(1, 64);
   }
+  const auto faces = static_cast<std::size_t>(2 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0]));
+  take_corners(corners_left, 4 * faces, view);
   std::map<std::array<int, 3>, std::uint32_t> points;
   const auto point = [&](const std::array<int, 3>& p) {
     const auto [found, fresh] =
@@ -62,11 +64,12 @@ void cage_of_box(const YamlView& view, MeshData& mesh) {
 }
 
 // A profile of [radius, height] points turned about y; radius 0 closes an end.
-void cage_of_lathe(const YamlView& view, MeshData& mesh) {
+void cage_of_lathe(const YamlView& view, MeshData& mesh, std::size_t& corners_left) {
   const YamlMap map = view.map("lathe", {"profile", "sides"});
   const int sides = map.has("sides") ? map.get("sides").integer(3, 256) : 8;
   const std::vector<YamlView> profile = map.get("profile").items();
   if (profile.size() < 2) view.fail("a lathe needs two points or more");
+  take_corners(corners_left, 4 * profile.size() * static_cast<std::size_t>(sides), view);
   std::vector<std::uint32_t> first;  // of each ring
   std::vector<bool> pole;
   for (std::size_t r = 0; r < profile.size(); ++r) {
@@ -111,7 +114,8 @@ void cage_of_faces(const YamlView& view, MeshData& mesh) {
 // Only the v and f lines of an OBJ file: importers make triangles, a cage needs its polygons.
 void cage_of_obj(const YamlView& view, MeshData& mesh) {
   const std::filesystem::path file = view.file();
-  std::ifstream in(file);
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  std::istringstream in(std::string(bytes.begin(), bytes.end()));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     const auto fail = [&](const std::string& what) {
@@ -150,7 +154,7 @@ float read_sharpness(const YamlView& view) {
 
 }  // namespace
 
-MeshData read_cage(const YamlView& view) {
+MeshData read_cage(const YamlView& view, std::size_t& corners_left) {
   const YamlMap map = view.map(
       "cage", {"scheme", "box", "lathe", "mesh", "file", "sharpness", "creases", "sharp_boundary"});
   MeshData mesh;
@@ -161,8 +165,8 @@ MeshData read_cage(const YamlView& view) {
   }
   const std::string source = map.one_of({"box", "lathe", "mesh", "file"});
   const YamlView value = map.get(source);
-  if (source == "box") cage_of_box(value, mesh);
-  if (source == "lathe") cage_of_lathe(value, mesh);
+  if (source == "box") cage_of_box(value, mesh, corners_left);
+  if (source == "lathe") cage_of_lathe(value, mesh, corners_left);
   if (source == "mesh") cage_of_faces(value, mesh);
   if (source == "file") cage_of_obj(value, mesh);
   if (mesh.cage->scheme == SubdivisionCage::Scheme::Loop) {

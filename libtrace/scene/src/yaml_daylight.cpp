@@ -209,7 +209,8 @@ void read_portals(YamlScene& scene, const YamlView& view) {
   if (const auto find = map.find("find")) portals.find = find->boolean();
   if (const auto polygons = map.find("polygons")) {
     for (const YamlView& item : polygons->items())
-      portals.polygons.push_back(read_shape("polygon", item).at(0).mesh.positions);
+      portals.polygons.push_back(
+          read_shape("polygon", item, scene.corners_left).at(0).mesh.positions);
   }
   if (const auto objects = map.find("objects")) {
     for (const YamlView& item : objects->items()) {

@@ -177,7 +177,7 @@ Placed read_lights(YamlScene& scene, const YamlView& list) {
     Placed light = read_light(scene, map, name);
     put_in_group(light, map);
     for (const Eigen::Affine3d& place : read_places(map, Eigen::Affine3d::Identity())) {
-      append(all, light, place, item);
+      append(scene, all, light, place, item);
     }
   }
   return all;

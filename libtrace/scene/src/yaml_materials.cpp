@@ -1,6 +1,8 @@
 #include <cmath>
+#include <map>
 #include <numbers>
 
+#include "import_util.h"
 #include "material/error.h"
 #include "material/pane.h"
 #include "scene/image_io.h"
@@ -350,7 +352,10 @@ material::TextureId read_texture_file(YamlScene& scene, const YamlView& view, bo
   }
   material::TextureId id;
   id.value = static_cast<std::uint32_t>(scene.model.textures.size());
-  scene.model.textures.push_back(read_texture(file));
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  scene.budget.need_texture(texture_bytes(bytes, file.string()),
+                            view.place() + ": " + file.string());
+  scene.model.textures.push_back(decode_texture(bytes, file.string()));
   scene.model.textures.back().srgb = srgb;
   scene.textures[key] = id;
   return id;
@@ -370,16 +375,25 @@ void read_materials(YamlScene& scene, const YamlView& view) {
 }
 
 void resolve_powers(YamlScene& scene, std::size_t first_node) {
+  if (scene.powers.empty()) return;
+  struct Area {
+    double sum = 0.0;
+    bool cage = false;  // has no area yet
+  };
+  std::map<std::uint32_t, Area> areas;  // by material
+  for (const PowerEmission& power : scene.powers) areas[power.material.value] = {};
+  for (std::size_t i = first_node; i < scene.model.nodes.size(); ++i) {
+    const Model::Node& node = scene.model.nodes[i];
+    const auto area = areas.find(node.material.value);
+    if (area == areas.end()) continue;
+    const MeshData& mesh = scene.model.meshes[node.mesh.value];
+    if (mesh.cage) area->second.cage = true;
+    area->second.sum += area_of(mesh, node.to_world);
+  }
   for (const PowerEmission& power : scene.powers) {
     Material& m = scene.model.materials[power.material.value];
-    double area = 0.0;
-    for (std::size_t i = first_node; i < scene.model.nodes.size(); ++i) {
-      const Model::Node& node = scene.model.nodes[i];
-      if (node.material != power.material) continue;
-      const MeshData& mesh = scene.model.meshes[node.mesh.value];
-      if (mesh.cage) throw Error(power.place + ": a subdivision surface needs radiance, not power");
-      area += area_of(mesh, node.to_world);
-    }
+    const auto [area, cage] = areas[power.material.value];
+    if (cage) throw Error(power.place + ": a subdivision surface needs radiance, not power");
     if (!(area > 0.0)) throw Error(power.place + ": no surface has material '" + m.name + "'");
     // A Lambertian emitter of radiance L sends out pi L per area and side.
     const double sides = m.emits_both_sides ? 2.0 : 1.0;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include "material/cie.h"
 #include "material/error.h"
@@ -8,9 +10,6 @@
 
 namespace atrium::scene {
 namespace {
-
-constexpr std::size_t kMaxNodes = 1'000'000;
-constexpr int kMaxCopies = 100'000;
 
 Eigen::Affine3d read_matrix(const YamlView& view) {
   const std::size_t count = view.items().size();
@@ -63,16 +62,17 @@ std::vector<Vec3d> read_repeat(const YamlView& view) {
   const YamlView count = map.get("count");
   std::vector<Vec3d> offsets;
   if (!count.is_sequence()) {
-    const int n = count.integer(1, kMaxCopies);
+    const int n = count.integer(1, limits::kCopies);
     for (int i = 0; i < n; ++i) offsets.push_back(i * step);
     return offsets;
   }
   const std::vector<YamlView> parts = count.items();
   if (parts.size() != 3) count.fail("count is a whole number or three of them");
-  const int nx = parts[0].integer(1, kMaxCopies);
-  const int ny = parts[1].integer(1, kMaxCopies);
-  const int nz = parts[2].integer(1, kMaxCopies);
-  if (static_cast<double>(nx) * ny * nz > kMaxCopies) count.fail("more than 100000 copies");
+  const int nx = parts[0].integer(1, limits::kCopies);
+  const int ny = parts[1].integer(1, limits::kCopies);
+  const int nz = parts[2].integer(1, limits::kCopies);
+  if (static_cast<double>(nx) * ny * nz > limits::kCopies)
+    count.fail("more than " + std::to_string(limits::kCopies) + " copies");
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) offsets.push_back(step.cwiseProduct(Vec3d(i, j, k)));
@@ -85,33 +85,42 @@ std::string material_name(const YamlScene& scene, MaterialId id) {
 
 // materials: {old name: new name} of what a file, group or box brought along.
 void replace_materials(YamlScene& scene, Placed& placed, const YamlView& view) {
-  for (const auto& [old_name, new_name] : view.named()) {
-    const MaterialId replacement = find_material(scene, new_name);
-    bool used = false;
-    std::string names;
-    for (Model::Node& node : placed.nodes) {
-      const std::string name = material_name(scene, node.material);
-      if (names.find("'" + name + "'") == std::string::npos) names += " '" + name + "'";
-      if (name != old_name) continue;
-      node.material = replacement;
-      used = true;
-    }
-    if (!used) new_name.fail("nothing here has material '" + old_name + "'; there are:" + names);
+  std::map<std::string, MaterialId> replacements;
+  std::set<std::string> unused;
+  const auto named = view.named();
+  for (const auto& [old_name, new_name] : named) {
+    replacements.emplace(old_name, find_material(scene, new_name));
+    unused.insert(old_name);
+  }
+  std::set<std::string> names;
+  for (Model::Node& node : placed.nodes) {
+    const std::string name = material_name(scene, node.material);
+    names.insert(name);
+    const auto found = replacements.find(name);
+    if (found == replacements.end()) continue;
+    node.material = found->second;
+    unused.erase(name);
+  }
+  for (const auto& [old_name, new_name] : named) {
+    if (!unused.contains(old_name)) continue;
+    std::string list;
+    for (const std::string& name : names) list += " '" + name + "'";
+    new_name.fail("nothing here has material '" + old_name + "'; there are:" + list);
   }
 }
 
 // All parts of one material become one mesh: a box of one material stays a closed solid.
 void add_shape(YamlScene& scene, const YamlMap& map, const std::string& kind,
                const std::string& name, Placed& placed) {
-  std::vector<ShapePart> parts = read_shape(kind, map.get(kind));
+  std::vector<ShapePart> parts = read_shape(kind, map.get(kind), scene.corners_left);
+  for (const ShapePart& part : parts) scene.budget.need(bytes_of(part.mesh), map.view().place());
   std::map<std::string, YamlView> own;
   if (const auto materials = map.find("materials")) {
-    for (const auto& [part, material] : materials->named()) {
-      if (std::none_of(parts.begin(), parts.end(),
-                       [&](const ShapePart& p) { return p.name == part; })) {
-        material.fail("a " + kind + " has no part '" + part + "' here");
-      }
-      own.emplace(part, material);
+    for (const auto& [part_name, material] : materials->named()) {
+      const auto is_part = [&wanted = part_name](const ShapePart& p) { return p.name == wanted; };
+      if (std::none_of(parts.begin(), parts.end(), is_part))
+        material.fail("a " + kind + " has no part '" + part_name + "' here");
+      own.emplace(part_name, material);
     }
   }
   std::vector<std::pair<MaterialId, std::size_t>> done;  // mesh of each material
@@ -179,6 +188,14 @@ Placed read_model_file(YamlScene& scene, const YamlView& view) {
   return placed;
 }
 
+std::size_t size_of(const Placed& p) { return p.nodes.size() + p.lights.size() + p.cameras.size(); }
+
+void check_room(const YamlScene& scene, std::size_t count, const YamlView& view) {
+  if (count > scene.placed_left)
+    view.fail("more than " + std::to_string(limits::kPlaced) +
+              " objects, those of groups and of each level of a nest counted");
+}
+
 Placed read_object(YamlScene& scene, const YamlView& view) {
   const YamlMap map = view.map(
       "object", {"name",   "box",   "polygon", "mesh",  "sphere",   "cylinder",   "cage",
@@ -214,9 +231,9 @@ Placed read_object(YamlScene& scene, const YamlView& view) {
   }
   put_in_group(content, map);
   Placed placed;
-  for (const Eigen::Affine3d& place : read_places(map, read_transform(map))) {
-    append(placed, content, place, view);
-  }
+  const std::vector<Eigen::Affine3d> places = read_places(map, read_transform(map));
+  check_room(scene, places.size() * size_of(content), view);
+  for (const Eigen::Affine3d& place : places) append(scene, placed, content, place, view);
   return placed;
 }
 
@@ -238,7 +255,8 @@ std::vector<Eigen::Affine3d> read_places(const YamlMap& map, const Eigen::Affine
   if (!repeat) return places;
   std::vector<Eigen::Affine3d> copies;
   const std::vector<Vec3d> offsets = read_repeat(*repeat);
-  if (offsets.size() * places.size() > kMaxCopies) repeat->fail("more than 100000 copies");
+  if (offsets.size() * places.size() > limits::kCopies)
+    repeat->fail("more than " + std::to_string(limits::kCopies) + " copies");
   for (const Vec3d& offset : offsets) {
     for (const Eigen::Affine3d& place : places)
       copies.push_back(Eigen::Translation3d(offset) * place);
@@ -246,10 +264,10 @@ std::vector<Eigen::Affine3d> read_places(const YamlMap& map, const Eigen::Affine
   return copies;
 }
 
-void append(Placed& all, const Placed& part, const Eigen::Affine3d& place, const YamlView& view) {
-  if (all.nodes.size() + all.lights.size() + part.nodes.size() + part.lights.size() > kMaxNodes) {
-    view.fail("more than a million objects");
-  }
+void append(YamlScene& scene, Placed& all, const Placed& part, const Eigen::Affine3d& place,
+            const YamlView& view) {
+  check_room(scene, size_of(part), view);
+  scene.placed_left -= size_of(part);
   for (Model::Node node : part.nodes) {
     node.to_world = place * node.to_world;
     all.nodes.push_back(std::move(node));
@@ -290,7 +308,7 @@ std::string read_light_group(const YamlMap& map) {
 Placed read_objects(YamlScene& scene, const YamlView& list) {
   Placed all;
   for (const YamlView& item : list.items()) {
-    append(all, read_object(scene, item), Eigen::Affine3d::Identity(), item);
+    append(scene, all, read_object(scene, item), Eigen::Affine3d::Identity(), item);
   }
   return all;
 }

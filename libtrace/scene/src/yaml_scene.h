@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "material/material.h"
+#include "model_budget.h"
+#include "scene/limits.h"
 #include "scene/scene.h"
 #include "scene/scene_io.h"
 #include "yaml_view.h"
@@ -39,6 +41,9 @@ struct YamlScene {
   std::map<std::string, Placed> files;                  ///< what model files hold, each read once
   std::map<std::string, material::TextureId> textures;  ///< by path and encoding
   std::vector<PowerEmission> powers;
+  ModelBudget budget;
+  std::size_t corners_left = limits::kShapeCorners;  ///< that shapes may still make
+  std::size_t placed_left = limits::kPlaced;         ///< objects, those within groups counted
 };
 
 // ---- yaml_spectra.cpp ----
@@ -80,15 +85,18 @@ struct ShapePart {
 };
 /// The keys of an object that make geometry.
 bool is_shape(std::string_view key);
-[[nodiscard]] std::vector<ShapePart> read_shape(std::string_view kind, const YamlView& view);
+/// \param corners_left  vertices that shapes may still make, lessened by those made.
+[[nodiscard]] std::vector<ShapePart> read_shape(std::string_view kind, const YamlView& view,
+                                                std::size_t& corners_left);
 
 // ---- yaml_objects.cpp ----
 
 /// Places of an object's copies: `at` and `repeat`, outside of `base`.
 [[nodiscard]] std::vector<Eigen::Affine3d> read_places(const YamlMap& map,
                                                        const Eigen::Affine3d& base);
-/// Appends a copy of `part` at `place`.
-void append(Placed& all, const Placed& part, const Eigen::Affine3d& place, const YamlView& view);
+/// Appends a copy of `part` at `place`. \throws Error  if the scene has too many.
+void append(YamlScene& scene, Placed& all, const Placed& part, const Eigen::Affine3d& place,
+            const YamlView& view);
 [[nodiscard]] Placed read_objects(YamlScene& scene, const YamlView& list);
 /// `light_group`; empty if not given.
 [[nodiscard]] std::string read_light_group(const YamlMap& map);

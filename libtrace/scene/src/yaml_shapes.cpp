@@ -91,12 +91,12 @@ MeshData read_mesh(const YamlView& view) {
   const YamlMap map = view.map("mesh", {"vertices", "faces"});
   MeshData mesh;
   mesh.positions = read_points(map.get("vertices"));
-  const YamlView list = map.get("faces");
-  const auto faces = read_faces(list, mesh.positions.size());
+  const std::vector<YamlView> list = map.get("faces").items();
+  const auto faces = read_faces(map.get("faces"), mesh.positions.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     std::vector<Vec3d> points;
     for (const std::uint32_t i : faces[f]) points.push_back(mesh.positions[i]);
-    check_polygon(points, list.items()[f]);
+    check_polygon(points, list[f]);
     add_polygon(mesh, faces[f]);
   }
   return mesh;
@@ -108,8 +108,10 @@ struct Ring {
   Vec2d normal;
 };
 
-MeshData revolve(const std::vector<Ring>& rings, int sides) {
+MeshData revolve(const std::vector<Ring>& rings, int sides, std::size_t& corners_left,
+                 const YamlView& view) {
   MeshData mesh;
+  take_corners(corners_left, rings.size() * static_cast<std::size_t>(sides + 1), view);
   const auto count = static_cast<std::uint32_t>(sides);
   for (std::size_t r = 0; r < rings.size(); ++r) {
     const Ring& ring = rings[r];
@@ -135,7 +137,7 @@ MeshData revolve(const std::vector<Ring>& rings, int sides) {
   return mesh;
 }
 
-MeshData read_sphere(const YamlView& view) {
+MeshData read_sphere(const YamlView& view, std::size_t& corners_left) {
   const YamlMap map = view.map("sphere", {"center", "radius", "segments"});
   const double radius = map.get("radius").positive();
   const int segments = map.has("segments") ? map.get("segments").integer(6, 2048) : 96;
@@ -147,14 +149,14 @@ MeshData read_sphere(const YamlView& view) {
     const Vec2d n(pole ? 0.0 : std::cos(angle), std::sin(angle));
     rings.push_back({radius * n.x(), radius * n.y(), n});
   }
-  MeshData mesh = revolve(rings, segments);
+  MeshData mesh = revolve(rings, segments, corners_left, view);
   if (const auto center = map.find("center")) {
     for (Vec3d& p : mesh.positions) p += center->vector();
   }
   return mesh;
 }
 
-MeshData read_cylinder(const YamlView& view) {
+MeshData read_cylinder(const YamlView& view, std::size_t& corners_left) {
   const YamlMap map = view.map("cylinder", {"from", "to", "radius", "segments", "open"});
   const Vec3d from = map.get("from").vector();
   const Vec3d axis = map.get("to").vector() - from;
@@ -167,7 +169,7 @@ MeshData read_cylinder(const YamlView& view) {
   if (!open) rings = {{0.0, 0.0, {0, -1}}, {radius, 0.0, {0, -1}}};
   rings.insert(rings.end(), {{radius, 0.0, {1, 0}}, {radius, height, {1, 0}}});
   if (!open) rings.insert(rings.end(), {{radius, height, {0, 1}}, {0.0, height, {0, 1}}});
-  MeshData mesh = revolve(rings, segments);
+  MeshData mesh = revolve(rings, segments, corners_left, view);
   // Rings 1-2 and 3-4 share a circle: the strips between them have no area.
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     const auto ring = [&](std::uint32_t i) { return i / static_cast<std::uint32_t>(segments + 1); };
@@ -224,13 +226,21 @@ bool is_shape(std::string_view key) {
          key == "cylinder" || key == "cage";
 }
 
-std::vector<ShapePart> read_shape(std::string_view kind, const YamlView& view) {
+void take_corners(std::size_t& left, std::size_t count, const YamlView& view) {
+  if (count > left)
+    view.fail("the shapes of this scene have more than " + std::to_string(limits::kShapeCorners) +
+              " vertices");
+  left -= count;
+}
+
+std::vector<ShapePart> read_shape(std::string_view kind, const YamlView& view,
+                                  std::size_t& corners_left) {
   if (kind == "box") return read_box(view);
   if (kind == "polygon") return {{"", read_polygon(view)}};
   if (kind == "mesh") return {{"", read_mesh(view)}};
-  if (kind == "sphere") return {{"", read_sphere(view)}};
-  if (kind == "cylinder") return {{"", read_cylinder(view)}};
-  return {{"", read_cage(view)}};
+  if (kind == "sphere") return {{"", read_sphere(view, corners_left)}};
+  if (kind == "cylinder") return {{"", read_cylinder(view, corners_left)}};
+  return {{"", read_cage(view, corners_left)}};
 }
 
 }  // namespace atrium::scene

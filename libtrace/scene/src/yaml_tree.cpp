@@ -1,28 +1,27 @@
 #include "yaml_tree.h"
 
-#include <fstream>
+#include <algorithm>
 #include <map>
 #include <sstream>
+#include <unordered_set>
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "import_util.h"
 #include "material/error.h"
+#include "scene/limits.h"
 
 namespace atrium::scene {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 16u << 20;
-constexpr std::size_t kMaxDepth = 64;
-constexpr std::size_t kMaxValues = 2'000'000;
-
-std::size_t count_values(const YamlNode& node) {
-  std::size_t count = 1;
-  for (const YamlNode& item : node.items) count += count_values(item);
-  for (const YamlNode::Entry& entry : node.entries) count += count_values(entry.value);
-  return count;
-}
+/// A value that an alias may name again.
+struct Anchored {
+  YamlNode node;
+  std::size_t values = 0;  ///< in it
+  std::size_t depth = 0;   ///< levels below it
+};
 
 // Builds the tree from the parser's events.
 class Builder : public YAML::EventHandler {
@@ -34,22 +33,24 @@ class Builder : public YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    add(make(YamlNode::Kind::Null, mark), anchor);
+    add(make(YamlNode::Kind::Null, mark), anchor, {});
   }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                 const std::string& value) override {
     YamlNode node = make(YamlNode::Kind::Scalar, mark);
     node.text = value;
-    add(std::move(node), anchor);
+    add(std::move(node), anchor, {});
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto known = anchors_.find(anchor);
     if (known == anchors_.end()) fail(mark, "an alias within its own value");
-    count(mark, count_values(known->second));
-    YamlNode copy = known->second;
+    const Anchored& named = known->second;
+    count(mark, named.values);
+    check_depth(mark, stack_.size() + named.depth);
+    YamlNode copy = named.node;
     copy.line = mark.line + 1;
     copy.column = mark.column + 1;
-    add(std::move(copy), 0);
+    add(std::move(copy), 0, {named.values, named.depth});
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
@@ -63,11 +64,17 @@ class Builder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
+  struct Size {
+    std::size_t values = 1;
+    std::size_t depth = 0;
+  };
   struct Open {
     YamlNode node;
     YAML::anchor_t anchor = 0;
+    Size size = {};
     bool has_key = false;
-    YamlNode::Entry entry;  // the key, while its value is awaited
+    YamlNode::Entry entry = {};                 // the key, while its value is awaited
+    std::unordered_set<std::string> keys = {};  // so far
   };
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
@@ -76,7 +83,9 @@ class Builder : public YAML::EventHandler {
   }
   void count(const YAML::Mark& mark, std::size_t values) {
     values_ += values;
-    if (values_ > kMaxValues) fail(mark, "more than 2 million values (aliases included)");
+    if (values_ > limits::kYamlValues)
+      fail(mark, "more than " + std::to_string(limits::kYamlValues) +
+                     " values (aliases, and what they may name, included)");
   }
   YamlNode make(YamlNode::Kind kind, const YAML::Mark& mark) {
     mark_ = mark;
@@ -87,18 +96,33 @@ class Builder : public YAML::EventHandler {
     node.column = mark.column + 1;
     return node;
   }
+  void check_depth(const YAML::Mark& mark, std::size_t levels) const {
+    if (levels > limits::kYamlDepth)
+      fail(mark, "nested deeper than " + std::to_string(limits::kYamlDepth) + " levels");
+  }
   void open(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
-    if (stack_.size() >= kMaxDepth) fail(mark, "nested deeper than 64 levels");
-    stack_.push_back({make(kind, mark), anchor, false, {}});
+    check_depth(mark, stack_.size() + 1);
+    stack_.push_back({make(kind, mark), anchor});
   }
   void close() {
     Open done = std::move(stack_.back());
     stack_.pop_back();
-    add(std::move(done.node), done.anchor);
+    ++done.size.depth;
+    add(std::move(done.node), done.anchor, done.size);
   }
 
-  void add(YamlNode node, YAML::anchor_t anchor) {
-    if (anchor != 0) anchors_[anchor] = node;
+  void add(YamlNode node, YAML::anchor_t anchor, Size size) {
+    size.values += node.text.size() / 64;  // a long text is more than a word
+    if (anchor != 0) {
+      // A copy of its own: anchors within anchors are copied once per level.
+      count(mark_, size.values);
+      anchors_[anchor] = {node, size.values, size.depth};
+    }
+    if (!stack_.empty()) {
+      Size& whole = stack_.back().size;
+      whole.values += size.values;
+      whole.depth = std::max(whole.depth, size.depth);
+    }
     if (stack_.empty()) {
       root_ = std::move(node);
       filled_ = true;
@@ -119,9 +143,8 @@ class Builder : public YAML::EventHandler {
     const std::string place =
         name_ + ":" + std::to_string(node.line) + ":" + std::to_string(node.column) + ": ";
     if (node.kind != YamlNode::Kind::Scalar) throw Error(place + "a key must be plain text");
-    for (const YamlNode::Entry& other : map.node.entries) {
-      if (other.key == node.text) throw Error(place + "key '" + node.text + "' appears twice");
-    }
+    if (!map.keys.insert(node.text).second)
+      throw Error(place + "key '" + node.text + "' appears twice");
     map.entry = {node.text, node.line, node.column, {}};
     map.has_key = true;
   }
@@ -132,18 +155,14 @@ class Builder : public YAML::EventHandler {
   bool filled_ = false;
   std::size_t values_ = 0;
   std::vector<Open> stack_;
-  std::map<YAML::anchor_t, YamlNode> anchors_;
+  std::map<YAML::anchor_t, Anchored> anchors_;
 };
 
 }  // namespace
 
 YamlNode load_yaml(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-  if (error) throw Error(file.string() + ": cannot be read");
-  if (bytes > kMaxBytes) throw Error(file.string() + ": larger than 16 MiB");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string() + ": cannot be read");
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file, limits::kYamlBytes);
+  std::istringstream in(std::string(bytes.begin(), bytes.end()));
   Builder builder(file.string());
   try {
     YAML::Parser parser(in);

@@ -26,9 +26,8 @@ struct YamlNode::Entry {
   YamlNode value;
 };
 
-/// Parses one document. Refused: more than 16 MiB, nesting deeper than 64, aliases that expand to
-/// more than 2 million values, keys that are no plain text or appear twice.
-/// \throws Error "FILE:LINE:COLUMN: ...".
+/// Parses one document. Refused: what goes beyond scene/limits.h, aliases that expand to it
+/// included; keys that are no plain text or appear twice. \throws Error "FILE:LINE:COLUMN: ...".
 [[nodiscard]] YamlNode load_yaml(const std::filesystem::path& file);
 
 }  // namespace atrium::scene

@@ -47,7 +47,7 @@ TEST(Epw, ErrorsNameTheLine) {
     }
     return "no error";
   };
-  EXPECT_EQ(message(""), ": is no EPW weather file: it is empty");
+  EXPECT_EQ(message(""), ": the file is empty");
   EXPECT_EQ(message("hello\n"), ":1: is no EPW weather file: it must begin with LOCATION");
   EXPECT_EQ(message("LOCATION,a,b,c,d,1,north\n"),
             ":1: expected a number for the latitude (field 7), found 'north'");

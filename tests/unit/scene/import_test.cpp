@@ -76,7 +76,7 @@ TEST(OriginalModels, MissingMaterialLibraryIsSaidAndTheTextureBesideFound) {
   const auto file = test::shared_folder() / "models/obj/building.obj";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models beside the project";
   const Model model = read_model({file});
-  EXPECT_TRUE(warns(model, "is missing"));
+  EXPECT_TRUE(warns(model, "material file left out"));
   // Either the image beside the model is its colour, or (built without images) that is said.
   EXPECT_TRUE(warns(model, "building.png"));
 }

@@ -125,6 +125,10 @@ scene::Solution two_groups() {
   s.field.lanes = 1;
   s.field.facets.resize(1);
   s.field.facets[0].nx = s.field.facets[0].ny = 1;
+  s.field.facets[0].origin = Vec3f::Zero();
+  s.field.facets[0].axis_u = Vec3f::UnitX();
+  s.field.facets[0].axis_v = Vec3f::UnitY();
+  s.field.valid = {1, 1};
   s.field.nodes = {0};
   s.field.triangle_facet = {0};
   s.field.element_facet = {0};

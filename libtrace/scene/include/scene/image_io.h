@@ -18,10 +18,16 @@ void preload_image_io();
 [[nodiscard]] bool image_io_available();
 
 /// Decodes PNG, JPEG, ... to 8 bits. `bytes`: the file in memory, `name` for messages and format.
-/// \throws Error if it is no image; RuntimeFailure if the module is missing.
+/// Formats by their first bytes: PNG, JPEG, EXR, HDR, TIFF; no other parser is reached.
+/// \throws Error if it is no image, or one that scene/limits.h refuses; RuntimeFailure if the
+/// module is missing.
 [[nodiscard]] material::Texture read_texture(const std::filesystem::path& file);
 [[nodiscard]] material::Texture decode_texture(const std::vector<std::uint8_t>& bytes,
                                                const std::string& name);
+
+/// Bytes that the decoded texture takes, by the head of the file alone. \throws  as above.
+[[nodiscard]] std::uint64_t texture_bytes(const std::vector<std::uint8_t>& bytes,
+                                          const std::string& name);
 
 /// A picture in memory as the bytes of a file. \param ending  ".png", or ".jpg" (without alpha).
 /// \throws RuntimeFailure  if the module is missing or cannot.

@@ -47,6 +47,12 @@ void write_polygon_mesh(const PolygonMesh& mesh, const std::filesystem::path& fi
 /// Does the ending name a format that write_polygon_mesh() knows?
 [[nodiscard]] bool is_mesh_ending(const std::filesystem::path& file);
 
+/// VTK's readers make room for what a file announces before they look at it. Here the numbers of
+/// points, cells and values that its XML names are compared with its size, and elements and types
+/// with those that there are. \throws Error "FILE: ..."  if it is missing, has others or announces
+/// more than it can hold.
+void check_mesh_file(const std::filesystem::path& file);
+
 /// What a mesh file holds.
 struct MeshFileSummary {
   struct Array {

@@ -93,11 +93,13 @@ struct BuildOptions {
   /// Subdivision surfaces: largest distance between limit surface and triangles, as a share of the
   /// distance to the eye (or of the scene's diagonal where there is no camera).
   double subdivision_error = 1e-3;
-  std::optional<Camera> view;  ///< in world coordinates; tessellation follows it
+  std::optional<Camera> view;      ///< in world coordinates; tessellation follows it
+  std::uint64_t memory_limit = 0;  ///< [bytes] for geometry and textures; 0: none
 };
 
 /// Repairs, rebases to the centre, tessellates, shares meshes, recognises panes.
-/// \throws Error if there is no geometry at all, or a material is invalid.
+/// \throws Error if there is no geometry at all, a material is invalid, or there are more triangles
+/// than scene/limits.h allows.  \throws RuntimeFailure  beyond the memory limit.
 [[nodiscard]] Scene build_scene(Model model, const BuildOptions& options = {});
 
 /// A view into the scene for files without a camera: inside, at eye height, looking along the

@@ -1,12 +1,15 @@
-#include <assimp/postprocess.h>
+#include <assimp/BaseImporter.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
 #include <cstdio>
+#include <memory>
+#include <string_view>
 #include <unordered_map>
 
 #include "import_util.h"
 #include "material/error.h"
+#include "model_budget.h"
 #include "scene/scene_io.h"
 
 namespace atrium::scene {
@@ -56,10 +59,6 @@ MeshData mesh_data(const aiMesh& source, const std::filesystem::path& file) {
   for (unsigned i = 0; i < source.mNumVertices; ++i) {
     mesh.positions.push_back(vec(source.mVertices[i]).cast<double>());
     if (source.HasNormals()) mesh.normals.push_back(vec(source.mNormals[i]));
-    if (source.HasTextureCoords(0)) {
-      const aiVector3D& uv = source.mTextureCoords[0][i];
-      mesh.uvs.emplace_back(static_cast<float>(uv.x), 1.0f - static_cast<float>(uv.y));
-    }
     if (source.HasVertexColors(0)) {
       const aiColor4D& c = source.mColors[0][i];
       mesh.colors.push_back(Vec3f(c.r, c.g, c.b).cwiseMax(0.0f).cwiseMin(1.0f));
@@ -100,16 +99,27 @@ void warn_of_rounding(Model& model, std::size_t first_mesh, const std::filesyste
   model.warnings.push_back(file.string() + text);
 }
 
+/// Leaves only the importer of STL: by itself the library looks for signatures of fifty formats.
+void keep_stl(Assimp::Importer& importer) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    if (importer.GetImporterInfo(i)->mFileExtensions == std::string_view("stl")) continue;
+    const std::unique_ptr<Assimp::BaseImporter> removed(importer.GetImporter(i));
+    importer.UnregisterLoader(removed.get());
+  }
+}
+
 }  // namespace
 
-void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadOptions&) {
-  static_cast<void>(read_file_bytes(file));  // says what is wrong with a file that is none
+void read_stl(Model& model, const std::filesystem::path& file, const ReadOptions& options) {
+  ModelBudget budget(model, options);
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  budget.need(3 * bytes.size(), file.string());  // the file, and what the importer makes of it
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  keep_stl(importer);
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "stl");
   if (scene == nullptr || scene->mRootNode == nullptr) {
     throw Error(file.string() + ": " + one_line(importer.GetErrorString()));
   }
-  const bool stl = file.extension() != ".ply" && file.extension() != ".PLY";
   const std::size_t first_mesh = model.meshes.size();
   MaterialId material;
   std::vector<std::pair<const aiNode*, Eigen::Affine3d>> open{
@@ -120,9 +130,8 @@ void read_mesh_file(Model& model, const std::filesystem::path& file, const ReadO
     for (unsigned k = 0; k < node->mNumChildren; ++k)
       open.emplace_back(node->mChildren[k], to_world);
     for (unsigned k = 0; k < node->mNumMeshes; ++k) {
-      MeshData mesh = mesh_data(*scene->mMeshes[node->mMeshes[k]], file);
+      MeshData mesh = merged(mesh_data(*scene->mMeshes[node->mMeshes[k]], file));
       if (mesh.triangles.empty()) continue;
-      if (stl) mesh = merged(mesh);
       if (!material.valid()) {
         material = MaterialId(model.materials.size());
         model.materials.push_back(grey_material(file.stem().string()));
