@@ -2,6 +2,7 @@
 
 #include "attribution.h"
 #include "scene/camera_film.h"
+#include "scene/roulette.h"
 
 namespace atrium::trace {
 
@@ -223,6 +224,7 @@ PixelSample<N> trace_bidirectional(const View<N>& view, const Eye& eye,
   Spectrum<N> beta = Spectrum<N>::one();
   scene::Ray ray = camera_ray;
   Counter kind = Counter::RaysPrimary;
+  scene::MediumStack media;
   float eta_scale = 1.0f;
   float travelled = 0.0f;  // since the last vertex, through panes
   int scattered = 0;
@@ -255,7 +257,7 @@ PixelSample<N> trace_bidirectional(const View<N>& view, const Eye& eye,
     const Vec3f to_eye = -ray.direction;
     const scene::Interaction<N> surface = shading.interact(*hit, to_eye);
     const Vec3f wo = surface.to_local(to_eye);
-    beta *= segment_transmittance(shading, surface, ray, distance);
+    beta *= segment_transmittance(shading, media, surface, ray, distance);
     travelled += distance;
     if (depth == 0) {
       out.depth = distance;
@@ -295,6 +297,7 @@ PixelSample<N> trace_bidirectional(const View<N>& view, const Eye& eye,
     else if (attribution.open())
       attribution.scatter(s->event, surface.bsdf.eval(wo, s->wi));
     beta *= s->weight;
+    pass_surface(media, surface, s->event);
     if ((s->event & (kRefraction | kLobeTransmission)) != 0)
       eta_scale *= surface.bsdf.eta() * surface.bsdf.eta();
     if (s->event != kPaneStraight) {
@@ -315,7 +318,7 @@ PixelSample<N> trace_bidirectional(const View<N>& view, const Eye& eye,
       travelled = 0.0f;
     }
     if (depth >= kRouletteDepth) {
-      const float survive = std::min(0.97f, beta.max() * eta_scale);
+      const float survive = std::min(scene::long_path_survival(scattered), beta.max() * eta_scale);
       if (!(sampler.next_1d() < survive)) break;
       beta /= survive;
     }

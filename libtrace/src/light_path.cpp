@@ -1,5 +1,7 @@
 #include "light_path.h"
 
+#include "scene/roulette.h"
+
 namespace atrium::trace {
 
 using scene::Counter;
@@ -117,7 +119,8 @@ void trace_light_path(const View<N>& view, scene::Sampler& sampler, LightPath<N>
   PathWeights weights;
   std::optional<LightShares<N>> classes;
   if (view.options.classes) classes.emplace();
-  bool straight = true;
+  scene::MediumStack media;
+  int scattered = 0;       // events, panes passed straight apart
   float travelled = 0.0f;  // since the last vertex, through panes
 
   for (int depth = 0;; ++depth) {
@@ -126,18 +129,18 @@ void trace_light_path(const View<N>& view, scene::Sampler& sampler, LightPath<N>
     if (!hit) break;
     const Vec3f to_light = -ray.direction;
     const scene::Interaction<N> surface = shading.interact(*hit, to_light);
-    flux *= segment_transmittance(shading, surface, ray, distance);
+    flux *= segment_transmittance(shading, media, surface, ray, distance);
     travelled += distance;
     const float cosine = std::abs(to_light.dot(surface.ng));
     if (!(cosine > 0.0f) || flux.is_zero()) break;
 
     PathWeights here = weights;
-    if (straight)
+    if (scattered == 0)
       here = first_weights(shading.lights(), *start, surface, travelled, cosine);
     else
       here.arrive(static_cast<double>(travelled), static_cast<double>(cosine));
     if (surface.bsdf.has(kDiffuseEvents | kLobeEvents))
-      path.push_back({surface, to_light, flux, here, straight, classes});
+      path.push_back({surface, to_light, flux, here, scattered == 0, classes});
 
     const float u_choice = sampler.next_1d();
     const Vec2f u = sampler.next_2d();
@@ -146,16 +149,18 @@ void trace_light_path(const View<N>& view, scene::Sampler& sampler, LightPath<N>
     if (!s) break;
     const Vec3f to_eye = surface.to_world(s->wi);
     if ((s->wi.z() > 0.0f) != (to_eye.dot(surface.ng) > 0.0f)) break;
+    pass_surface(media, surface, s->event);
     if (s->event == kPaneStraight) {
       flux *= s->weight;
     } else {
       weights = here;
       if (!scatter(view, surface, *s, to_light, to_eye, flux, weights, classes)) break;
-      straight = false;
+      ++scattered;
       travelled = 0.0f;
     }
     if (depth >= kRouletteDepth) {
-      const float survive = std::min(0.97f, flux.max() / start->flux.max());
+      const float survive =
+          std::min(scene::long_path_survival(scattered), flux.max() / start->flux.max());
       if (!(sampler.next_1d() < survive)) break;
       flux /= survive;
     }
