@@ -2,7 +2,8 @@
 #
 # One library of the project: alias atrium::name, C++20, the warnings, the public include root
 # (and only that) for its users, precompiled standard headers, export set.
-set(ATRIUM_WARNINGS -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion)
+set(ATRIUM_WARNINGS -Wall -Wextra -Wconversion -Wshadow
+    $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>)  # clang means arguments of functions, too
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND ATRIUM_WARNINGS -Wno-restrict)  # false alarms for "text" + std::string (GCC PR105651)
 endif()

@@ -49,7 +49,7 @@ std::vector<std::string> names() {
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Readers, HostileInput, testing::ValuesIn(names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& reader) { return reader.param; });
 
 // Seeds are what fuzzing starts from: each reader takes at least one of its own.
 TEST(FuzzSeeds, EveryReaderTakesOneOfItsSeeds) {
