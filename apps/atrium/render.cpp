@@ -301,7 +301,10 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   for (const std::string& file : c.scene.files) {
     if (!fs::exists(file)) throw Error(file + ": cannot be read: no such file");
   }
-  scene::preload_image_io();
+  // Where nothing but .pfm is written, only textures need the module; they load it.
+  if (std::any_of(c.outputs.begin(), c.outputs.end(),
+                  [](const std::string& file) { return scene::file_ending(file) != ".pfm"; }))
+    scene::preload_image_io();
   Session session(c.common, std::move(stop));
   Statistics statistics;
   statistics.seed = c.solve.seed;

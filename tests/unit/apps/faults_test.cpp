@@ -256,6 +256,17 @@ TEST_F(Faults, LittleMemoryIsOneLine) {
 #endif
 }
 
+// Three quarters of the instructions of a small picture would be that library's loading.
+TEST_F(Faults, PicturesWithoutNeedDoNotLoadTheImageLibrary) {
+  const auto loads = [&](const std::string& name) {
+    const Result r = with("LD_DEBUG=files ", "render room.yaml -o " + name + kSmallPicture);
+    EXPECT_EQ(r.code, 0);
+    return r.err.find("libOpenImageIO") != std::string::npos;
+  };
+  EXPECT_FALSE(loads("a.pfm"));
+  EXPECT_TRUE(loads("a.exr"));
+}
+
 // The program alone in a folder finds no module, and says so for what needs one.
 TEST_F(Faults, MissingModules) {
   std::filesystem::create_directories(folder / "bin");

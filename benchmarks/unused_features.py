@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""What a feature costs a scene that does not use it: instructions (callgrind) and memory (largest
+resident size) with the feature enabled against the same run without it, on one thread.
+
+    cmake --preset release && cmake --build build/release --target atrium
+    benchmarks/unused_features.py build/release/bin/atrium > table.md
+
+Also start-up: processor time of the process before a scene is read, over 50 runs. Instructions do
+not depend on what else runs on the machine.
+"""
+import argparse
+import pathlib
+import re
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOM = """atrium: 1
+unit: nit
+{head}materials:
+  wall: {{body: 0.7}}
+  lamp: {{body: 0.5, emission: 100}}
+{materials}objects:
+  - {{name: room, material: wall, {group}box: {{min: [0, 0, 0], max: [3, 2.5, 4], inside: true}}}}
+  - {{name: block, material: wall, box: {{min: [1, 0, 1], max: [2, 1, 2]}}}}
+  - {{name: lamp, material: lamp, {group}polygon: [[1, 2.4, 1], [2, 2.4, 1], [2, 2.4, 2], [1, 2.4, 2]]}}
+cameras:
+  - {{name: inside, perspective: {{eye: [1.5, 1.2, 3.8], target: [1.5, 1, 0], yfov: 60}}}}
+{cameras}"""
+
+UNUSED_MATERIALS = """  glass: {medium: solid, ior: 1.5}
+  window: {medium: pane, ior: 1.5}
+  gold: {ior: {n: 0.2, k: 3}, c: 10}
+  sheet: {k_tp_df: 1, body: 0.4, body_transmission: 0.3}
+"""
+UNUSED_CAMERAS = "".join(
+    f"  - {{name: c{i}, panorama: {{eye: [1, 1, {1 + 0.1 * i}], target: [0, 1, 0]}}}}\n" for i in range(8))
+
+RENDER = "render {scene} -o {out}.pfm --method direct --size 32x24 --samples 4 --threads 1 --quiet"
+
+# name, command, scene and options with the feature enabled but unused, scene and options without
+FEATURES = [
+    ("pane detection, no glass", RENDER, {}, "", {}, "--no-pane-detection"),
+    ("choice of spectral lanes, grey scene", RENDER, {}, "", {}, "--spectrum grey"),
+    ("materials of glass, panes, metal, sheets that no object has", RENDER,
+     {"materials": UNUSED_MATERIALS}, "", {}, ""),
+    ("eight more cameras", RENDER, {"cameras": UNUSED_CAMERAS}, "", {}, ""),
+    ("openings to the sky, no sky", RENDER, {}, "", {"head": "portals: {find: false}\n"}, ""),
+    ("air that absorbs, by nothing", RENDER, {"head": "medium: {extinction: 0}\n"}, "", {}, ""),
+    ("limit of time that is not reached", RENDER, {}, "--time-limit 100000", {}, ""),
+    ("one light group", RENDER, {"group": "light_group: day, "}, "", {}, ""),
+    ("statistics of the run", RENDER, {}, "--stats stats.json", {}, ""),
+]
+
+
+def instructions(command, folder):
+    run = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind.out"]
+                         + command, capture_output=True, text=True, check=True, cwd=folder)
+    return int(re.search(r"Collected : (\d+)", run.stderr).group(1))
+
+
+def resident_mb(command, folder):
+    """Least of three runs: whatever else happens only adds."""
+    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+    sizes = [int(subprocess.run([sys.executable, "-c", code] + command, capture_output=True, text=True,
+                                check=True, cwd=folder).stdout) for _ in range(3)]
+    return min(sizes) / 1024
+
+
+def measure(atrium, folder, template, scene, options, label):
+    values = {"head": "", "materials": "", "group": "", "cameras": ""} | scene
+    file = pathlib.Path(folder) / f"{label}.yaml"
+    file.write_text(ROOM.format(**values))
+    command = [atrium] + template.format(scene=file, out=label).split() + options.split()
+    return instructions(command, folder), resident_mb(command, folder)
+
+
+def cpu_ms(command):
+    times = []
+    for _ in range(50):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(command, capture_output=True, check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        times.append(1e3 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime))
+    return statistics.median(times)
+
+
+def start_up(atrium, folder):
+    scene = pathlib.Path(folder) / "triangle.yaml"
+    scene.write_text("atrium: 1\nmaterials: {m: {body: 0.5}}\n"
+                     "objects: [{name: t, material: m, polygon: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}]\n")
+    print("| process | processor time, median of 50 [ms] | instructions [million] |\n| --- | --- | --- |")
+    for name, command in [("`atrium --version`", [atrium, "--version"]),
+                          ("`atrium info` of one triangle", [atrium, "info", str(scene)])]:
+        print(f"| {name} | {cpu_ms(command):.1f} | {instructions(command, folder) / 1e6:.1f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("atrium", type=lambda p: str(pathlib.Path(p).resolve()))
+    arguments = parser.parse_args()
+    failed = False
+    with tempfile.TemporaryDirectory() as folder:
+        start_up(arguments.atrium, folder)
+        print("\n| feature, enabled and not used | instructions with [million] | without | difference | "
+              "memory with [MB] | without | difference |\n| --- | --- | --- | --- | --- | --- | --- |")
+        for name, template, scene, options, plain, off in FEATURES:
+            with_it = measure(arguments.atrium, folder, template, scene, options, "with")
+            without = measure(arguments.atrium, folder, template, plain, off, "without")
+            difference = [100 * (a / b - 1) for a, b in zip(with_it, without)]
+            failed |= max(difference) >= 2.0
+            print(f"| {name} | {with_it[0] / 1e6:.1f} | {without[0] / 1e6:.1f} | {difference[0]:+.2f} % | "
+                  f"{with_it[1]:.1f} | {without[1]:.1f} | {difference[1]:+.2f} % |", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
