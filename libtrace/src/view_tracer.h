@@ -82,7 +82,8 @@ class ViewTracer {
     a(counters_);
     a(piece_);
     first_ = false;
-    return done_.size() == pixels && rays_.size() == pixels && counters_.size() == tiles;
+    return done_.size() == pixels && rays_.size() == pixels && counters_.size() == tiles &&
+           piece_.next <= piece_.end;
   }
 
   /// As Pass has it.

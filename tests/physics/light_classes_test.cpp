@@ -79,9 +79,9 @@ void expect_agreement(const scene::Scene& scene) {
   const SpectralBasis basis = SpectralBasis::grey();
   const scene::Camera camera = in_scene(camera_at({1.5, 1.3, 0.2}, {1.3, 0.8, 3.0}, 1.1), scene);
   radiosity::SolveOptions solve;
-  solve.max_elements = 6000;
+  solve.max_elements = 4000;
   const radiosity::SolveResult solved = radiosity::solve(query, basis, solve);
-  RenderOptions path = path_options(24, 192), hybrid = path_options(24, 96);
+  RenderOptions path = path_options(24, 128), hybrid = path_options(24, 64);
   hybrid.method = Method::Hybrid;
   path.classes = hybrid.classes = true;
   const scene::Image reference = render(query, basis, camera, {}, path).image;
