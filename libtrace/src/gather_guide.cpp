@@ -23,13 +23,13 @@ std::size_t GatherGuide::place(const Vec3f& position, const Vec3f& normal, float
   return places_.size() - 1;
 }
 
-void GatherGuide::found(std::size_t place, const Vec2f& where, float square, float density) {
-  if (place == kNone || !std::isfinite(square)) return;
+void GatherGuide::found(std::size_t place, const Vec2f& where, float value, float density) {
+  if (place == kNone || !std::isfinite(value)) return;
   Place& p = places_[place];
+  const auto x = static_cast<double>(value);  // whose square may be beyond a float
   ++p.rays;
-  p.sum += std::sqrt(static_cast<double>(square)) / static_cast<double>(density);
-  p.squares[scene::SquareDensity::cell_of(where)] +=
-      static_cast<double>(square) / static_cast<double>(density);
+  p.sum += x / static_cast<double>(density);
+  p.squares[scene::SquareDensity::cell_of(where)] += x * x / static_cast<double>(density);
 }
 
 void GatherGuide::learn() {
@@ -45,8 +45,9 @@ void GatherGuide::learn() {
     const auto rays = static_cast<double>(p.rays);
     const double mean = p.sum / rays;
     const double variance = square / rays - mean * mean;
+    if (!(variance > 0.0)) continue;
     const double gain = 1.0 - (1.0 - fitted.moment) * (square / rays) / variance;
-    p.bent = variance > 0.0 && gain < kWorthwhile;
+    p.bent = gain < kWorthwhile;
     p.levels = fitted.levels;
   }
 }

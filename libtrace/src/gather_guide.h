@@ -23,9 +23,9 @@ class GatherGuide {
     return scene::SquareDensity(place == kNone || !places_[place].bent ? nullptr
                                                                        : &places_[place].levels);
   }
-  /// \param square  of what the ray found. \param where  in the square that its numbers were bent
-  /// in. \param density  at that place.
-  void found(std::size_t place, const Vec2f& where, float square, float density);
+  /// \param value  that the ray found, for uniform rays. \param where  in the square that its numbers
+  /// were bent in. \param density  at that place.
+  void found(std::size_t place, const Vec2f& where, float value, float density);
   /// A pass of the tile begins: what was found until now says where its rays go.
   void learn();
 

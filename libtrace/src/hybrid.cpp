@@ -315,7 +315,7 @@ Gathered<N> gather(const View<N>& view, const scene::Interaction<N>& from,
     kind = Counter::RaysSpecular;
   }
   const float found = (g.straight + g.indirect).mean() * s->density;
-  guide.found(directions.place(), s->where, found * found, s->density);
+  guide.found(directions.place(), s->where, found, s->density);
   return g;
 }
 

@@ -55,6 +55,15 @@ bool starts_with(const std::uint8_t* bytes, std::size_t size, std::string_view m
 
 /// OpenImageIO's name of the format; empty for what is not read. Asked to choose for itself, it
 /// tries some forty parsers one after the other.
+/// Truevision TGA has no signature: its header must make sense.
+bool is_targa(const std::uint8_t* bytes, std::size_t size) {
+  if (size < 18 || bytes[1] > 1) return false;
+  const int type = bytes[2];
+  const int bits = bytes[16];
+  return (type == 1 || type == 2 || type == 3 || (type >= 9 && type <= 11)) &&
+         (bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32);
+}
+
 std::string format_of(const std::uint8_t* bytes, std::size_t size) {
   using namespace std::string_view_literals;
   if (starts_with(bytes, size, "\x89PNG"sv)) return "png";
@@ -62,10 +71,12 @@ std::string format_of(const std::uint8_t* bytes, std::size_t size) {
   if (starts_with(bytes, size, "\x76\x2f\x31\x01"sv)) return "openexr";
   if (starts_with(bytes, size, "#?"sv)) return "hdr";
   if (starts_with(bytes, size, "II*\0"sv) || starts_with(bytes, size, "MM\0*"sv)) return "tiff";
+  if (starts_with(bytes, size, "BM"sv)) return "bmp";
+  if (is_targa(bytes, size)) return "targa";
   return {};
 }
-constexpr const char* kUnread = "not one of the formats that are read: PNG, JPEG, EXR, HDR, TIFF";
-constexpr std::size_t kMagicBytes = 8;
+constexpr const char* kUnread = "not one of the formats that are read: PNG, JPEG, EXR, HDR, TIFF, BMP, TGA";
+constexpr std::size_t kMagicBytes = 18;
 
 float decode_srgb(float v) {
   return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
