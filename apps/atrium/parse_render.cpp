@@ -161,7 +161,7 @@ class RenderParser : public CommandParser {
         ->capture_default_str();
     app.add_option("--indirect", indirect_,
                    "inter-reflection in the picture: mesh (interpolated), gather (hemisphere "
-                   "rays), auto: mesh for drafts")
+                   "rays), auto: gather")
         ->check(CLI::IsMember({"auto", "mesh", "gather"}))
         ->capture_default_str();
     app.add_option("--checkpoint", o_.checkpoint,

@@ -105,7 +105,7 @@ Case closed_room() {
         kit.polygon("table", white, {{2.5, 1, 0.7}, {3.5, 1, 0.7}, {3.5, 2, 0.7}, {2.5, 2, 0.7}});
         const Solution s(
             kit.build(),
-            {.solver = solver, .element_size = 1.0, .direct_samples = 256, .seed = seed});
+            {.solver = solver, .element_size = 1.0, .direct_samples = 2048, .seed = seed});
         const double flux = s.sum("", Part::Total).flux +
                             s.sum("lamp", Part::Total, scene::Side::Back).flux +
                             s.sum("table", Part::Total, scene::Side::Back).flux;

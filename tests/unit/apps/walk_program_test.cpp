@@ -96,7 +96,7 @@ TEST_F(AtriumWalk, PartsHaveTheBitsOfTheWhole) {
   ASSERT_EQ(run(folder, walk + "--frames 5 -o c.pfm --save-solution s.atrium" + rest).code, 0);
   const Result again =
       run(folder,
-          "render room.yaml --path walk.yaml --size 32x24 --samples 4 --indirect mesh "
+          "render room.yaml --path walk.yaml --size 32x24 --samples 4 --indirect gather "
           "--frames 5 --frame-range 2 --solution s.atrium -o d.pfm --stats s.json" +
               rest);
   ASSERT_EQ(again.code, 0) << again.err;
