@@ -103,9 +103,12 @@ Case closed_room() {
         kit.polygon("lamp", kit.diffuse(rho, 5.0),
                     {{1, 1, 2.2}, {1, 2, 2.2}, {2, 2, 2.2}, {2, 1, 2.2}});
         kit.polygon("table", white, {{2.5, 1, 0.7}, {3.5, 1, 0.7}, {3.5, 2, 0.7}, {2.5, 2, 0.7}});
-        const Solution s(
-            kit.build(),
-            {.solver = solver, .element_size = 1.0, .direct_samples = 2048, .seed = seed});
+        const Solution s(kit.build(), {.solver = solver,
+                                       .element_size = 1.0,
+                                       .row_rays = 512,
+                                       .gather_rays = 512,
+                                       .direct_samples = 1024,
+                                       .seed = seed});
         const double flux = s.sum("", Part::Total).flux +
                             s.sum("lamp", Part::Total, scene::Side::Back).flux +
                             s.sum("table", Part::Total, scene::Side::Back).flux;
