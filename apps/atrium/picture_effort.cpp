@@ -9,15 +9,9 @@ namespace {
 
 constexpr int kMostSamples = 1 << 16;  // of a pixel, with an error asked for
 
-trace::Indirect choice_or(IndirectChoice choice, trace::Indirect automatic) {
-  switch (choice) {
-    case IndirectChoice::Mesh:
-      return trace::Indirect::Mesh;
-    case IndirectChoice::Gather:
-      return trace::Indirect::Gather;
-    default:
-      return automatic;
-  }
+/// Interpolated only where that is asked for.
+trace::Indirect indirect_of(IndirectChoice choice) {
+  return choice == IndirectChoice::Mesh ? trace::Indirect::Mesh : trace::Indirect::Gather;
 }
 
 /// Error per pixel that needs the same radiosity as what was asked: the noise of blocks of 8x8
@@ -49,16 +43,15 @@ std::string percent(double share) {
 PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
                           const scene::Features& features) {
   PictureEffort plan;
+  plan.indirect = indirect_of(c.indirect);
   const double error = pixel_error(c);
   if (!(error > 0.0)) {
     const Effort effort = effort_of(c.solve.quality);
     plan.spread = c.samples == 0 && c.method != trace::Method::Path;
     plan.samples = c.samples > 0 ? c.samples : plan.spread ? effort.mean_samples : effort.samples;
-    plan.indirect = choice_or(c.indirect, c.classes ? trace::Indirect::Gather : effort.indirect);
     return plan;
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;
-  plan.indirect = choice_or(c.indirect, trace::Indirect::Gather);
   if (c.method == trace::Method::Hybrid && plan.indirect == trace::Indirect::Mesh)
     plan.caution =
         "--indirect mesh: the error of the interpolated radiosity is not in the picture's estimate";

@@ -209,23 +209,7 @@ Sweep touching_boxes(Extent extent) {
                          kit.room({0, 0, 0}, {3, 3, 2}, white);
                          for (int i = 0; i < n; ++i) {
                            const double low = 1.0 * i / n, high = 1.0 * (i + 1) / n;
-                           std::vector<Vec3d> p;
-                           for (int k = 0; k < 8; ++k)
-                             p.emplace_back(1 + (k & 1), 1 + ((k & 2) >> 1),
-                                            (k & 4) != 0 ? high : low);
-                           kit.mesh("box", white, p,
-                                    {{0, 2, 3},
-                                     {0, 3, 1},
-                                     {4, 5, 7},
-                                     {4, 7, 6},
-                                     {0, 1, 5},
-                                     {0, 5, 4},
-                                     {2, 6, 7},
-                                     {2, 7, 3},
-                                     {0, 4, 6},
-                                     {0, 6, 2},
-                                     {1, 3, 7},
-                                     {1, 7, 5}});
+                           kit.block("box", white, {1, 1, low}, {2, 2, high});
                          }
                          kit.polygon("lamp", kit.diffuse(kRho, kExitance),
                                      {{1, 1, 1.5}, {1, 2, 1.5}, {2, 2, 1.5}, {2, 1, 1.5}});

@@ -186,23 +186,7 @@ Sweep slabs(Extent extent) {
                          const auto glass = kit.material(m);
                          for (int i = 0; i < n; ++i) {
                            const double x = 0.01 * (i + 1);
-                           std::vector<Vec3d> p;
-                           for (int k = 0; k < 8; ++k)
-                             p.emplace_back((k & 1) != 0 ? x + 0.005 : x, (k & 2) != 0 ? 2 : -2,
-                                            (k & 4) != 0 ? 2 : -2);
-                           kit.mesh("slab", glass, p,
-                                    {{0, 2, 3},
-                                     {0, 3, 1},
-                                     {4, 5, 7},
-                                     {4, 7, 6},
-                                     {0, 1, 5},
-                                     {0, 5, 4},
-                                     {2, 6, 7},
-                                     {2, 7, 3},
-                                     {0, 4, 6},
-                                     {0, 6, 2},
-                                     {1, 3, 7},
-                                     {1, 7, 5}});
+                           kit.block("slab", glass, {x, -2, -2}, {x + 0.005, 2, 2});
                          }
                          square(kit, "lamp", kit.diffuse(0.0, M_PI), 0.01 * (n + 1), -1);
                          return of_pictures(kit, 0.0, 0.96 / (0.96 + 2 * n * 0.04), 32);
@@ -214,40 +198,25 @@ Sweep slabs(Extent extent) {
 Sweep nested(Extent extent) {
   Sweep s{kFamily, "absorbing bodies one in another, pictures", "1 .. 32", "exp(-sum K d)", {}};
   for (const int n : extent == Extent::Full ? std::vector{1, 2, 4, 8, 32} : std::vector{8})
-    s.cases.push_back(
-        {text(n), [n] {
-           SceneKit kit;
-           double depth = 0.0;
-           for (int i = 1; i <= n; ++i) {
-             Material m;
-             m.medium = Material::Medium::Solid;
-             m.k_df = 0.0;
-             m.k_rg = m.k_tp_rg = 1.0;
-             m.n = 1.0;
-             m.extinction = static_cast<double>(i) / n;
-             const double half = 1.0 - 0.9 * (i - 1) / n, inner = i == n ? 0.0 : 1.0 - 0.9 * i / n;
-             depth += 2 * (half - inner) * i / n;
-             std::vector<Vec3d> p;
-             for (int k = 0; k < 8; ++k)
-               p.emplace_back((k & 1) != 0 ? half : -half, (k & 2) != 0 ? 1 + half : -1 - half,
-                              (k & 4) != 0 ? 1 + half : -1 - half);
-             kit.mesh("body", kit.material(m), p,
-                      {{0, 2, 3},
-                       {0, 3, 1},
-                       {4, 5, 7},
-                       {4, 7, 6},
-                       {0, 1, 5},
-                       {0, 5, 4},
-                       {2, 6, 7},
-                       {2, 7, 3},
-                       {0, 4, 6},
-                       {0, 6, 2},
-                       {1, 3, 7},
-                       {1, 7, 5}});
-           }
-           square(kit, "lamp", kit.diffuse(0.0, M_PI), 1.5, -1);
-           return of_pictures(kit, -1.5, std::exp(-depth), 64);
-         }});
+    s.cases.push_back({text(n), [n] {
+                         SceneKit kit;
+                         double depth = 0.0;
+                         for (int i = 1; i <= n; ++i) {
+                           Material m;
+                           m.medium = Material::Medium::Solid;
+                           m.k_df = 0.0;
+                           m.k_rg = m.k_tp_rg = 1.0;
+                           m.n = 1.0;
+                           m.extinction = static_cast<double>(i) / n;
+                           const double half = 1.0 - 0.9 * (i - 1) / n,
+                                        inner = i == n ? 0.0 : 1.0 - 0.9 * i / n;
+                           depth += 2 * (half - inner) * i / n;
+                           kit.block("body", kit.material(m), {-half, -1 - half, -1 - half},
+                                     {half, 1 + half, 1 + half});
+                         }
+                         square(kit, "lamp", kit.diffuse(0.0, M_PI), 1.5, -1);
+                         return of_pictures(kit, -1.5, std::exp(-depth), 64);
+                       }});
   return s;
 }
 

@@ -38,27 +38,6 @@ Material glass(Material::Medium medium) {
   return m;
 }
 
-void block(SceneKit& kit, const std::string& name, scene::MaterialId material, const Vec3d& low,
-           const Vec3d& high) {
-  std::vector<Vec3d> p;
-  for (int i = 0; i < 8; ++i)
-    p.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
-                   (i & 4) != 0 ? high.z() : low.z());
-  kit.mesh(name, material, std::move(p),
-           {{0, 2, 3},
-            {0, 3, 1},
-            {4, 5, 7},
-            {4, 7, 6},
-            {0, 1, 5},
-            {0, 5, 4},
-            {2, 6, 7},
-            {2, 7, 3},
-            {0, 4, 6},
-            {0, 6, 2},
-            {1, 3, 7},
-            {1, 7, 5}});
-}
-
 std::uint64_t count(const std::vector<float>& values) {
   return static_cast<std::uint64_t>(
       std::count_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); }));
@@ -86,15 +65,15 @@ Setting furnished_room(double emission) {
   kit.room({0, 0, 0}, {4, 3, 2.5}, white);
   kit.polygon("lamp", kit.diffuse(0.3, emission * M_PI),
               {{1.5, 1, 2.4}, {1.5, 2, 2.4}, {2.5, 2, 2.4}, {2.5, 1, 2.4}});
-  block(kit, "cupboard", white, {0.7, 0.8, 0}, {1.3, 1.7, 0.8});
-  block(kit, "wall", white, {2.9, -0.2, -0.2}, {3.0, 1.4, 2.1});
+  kit.block("cupboard", white, {0.7, 0.8, 0}, {1.3, 1.7, 0.8});
+  kit.block("wall", white, {2.9, -0.2, -0.2}, {3.0, 1.4, 2.1});
   kit.polygon("mirror", kit.material(mirror()),
               {{0.01, 0.5, 0.8}, {0.01, 2.0, 0.8}, {0.01, 2.0, 2.0}, {0.01, 0.5, 2.0}});
   kit.polygon("pane", kit.material(glass(Material::Medium::Pane)),
               {{1.6, 2.0, 0.1}, {2.6, 2.2, 0.1}, {2.6, 2.2, 1.6}, {1.6, 2.0, 1.6}});
-  block(kit, "glass", kit.material(glass(Material::Medium::Solid)), {1.6, 0.6, 0.01},
-        {2.0, 1.0, 0.5});
-  block(kit, "plastic", kit.material(plastic()), {2.2, 1.2, 0.01}, {2.6, 1.6, 0.4});
+  kit.block("glass", kit.material(glass(Material::Medium::Solid)), {1.6, 0.6, 0.01},
+            {2.0, 1.0, 0.5});
+  kit.block("plastic", kit.material(plastic()), {2.2, 1.2, 0.01}, {2.6, 1.6, 0.4});
   return {std::move(kit.model()), look_at({3.7, 2.7, 1.5}, {1.3, 1.0, 0.8}, 1.1), 1.0};
 }
 

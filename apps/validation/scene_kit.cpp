@@ -67,6 +67,27 @@ void SceneKit::polygon(const std::string& name, MaterialId material, std::vector
   mesh(name, material, std::move(corners), std::move(triangles));
 }
 
+void SceneKit::block(const std::string& name, MaterialId material, const Vec3d& low,
+                     const Vec3d& high) {
+  std::vector<Vec3d> p;
+  for (int i = 0; i < 8; ++i)
+    p.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
+                   (i & 4) != 0 ? high.z() : low.z());
+  mesh(name, material, std::move(p),
+       {{0, 2, 3},
+        {0, 3, 1},
+        {4, 5, 7},
+        {4, 7, 6},
+        {0, 1, 5},
+        {0, 5, 4},
+        {2, 6, 7},
+        {2, 7, 3},
+        {0, 4, 6},
+        {0, 6, 2},
+        {1, 3, 7},
+        {1, 7, 5}});
+}
+
 void SceneKit::room(const Vec3d& low, const Vec3d& high, const std::array<MaterialId, 6>& m,
                     const std::string& prefix) {
   const auto p = [&](int x, int y, int z) {

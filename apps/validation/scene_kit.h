@@ -32,6 +32,9 @@ class SceneKit {
             const std::string& prefix = "");
   void room(const Vec3d& low, const Vec3d& high, scene::MaterialId material,
             const std::string& prefix = "");
+  /// Axis-parallel box seen from outside, one mesh of 12 triangles.
+  void block(const std::string& name, scene::MaterialId material, const Vec3d& low,
+             const Vec3d& high);
   /// Sphere round the origin by `levels` subdivisions of an octahedron, corners on the sphere.
   /// Zones PREFIX0, PREFIX1, ... from top to bottom of equally many bands of the octahedron's
   /// corners; one zone per material.

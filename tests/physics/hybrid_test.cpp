@@ -5,6 +5,7 @@
 
 #include "radiosity/solve.h"
 #include "scene/parallel.h"
+#include "support/materials.h"
 #include "support/scenes.h"
 #include "trace/render.h"
 
@@ -13,33 +14,12 @@ namespace {
 
 using material::Material;
 using material::SpectralBasis;
+using testing::glass;
+using testing::mirror;
+using testing::plastic;
 using testing::SceneMaker;
 
 constexpr int kSize = 32;
-
-Material plastic() {
-  Material m;
-  m.combination = Material::Combination::Coupled;
-  m.body_reflectance = 0.6;
-  m.k_rg = 1.0;
-  m.c = 8.0;
-  return m;
-}
-Material mirror() {
-  Material m;
-  m.k_df = 0.0;
-  m.k_rg = 1.0;
-  m.n = 0.2;
-  m.kappa = 20.0;
-  return m;
-}
-Material glass(Material::Medium medium) {
-  Material m;
-  m.medium = medium;
-  m.k_df = 0.0;
-  m.k_rg = m.k_tp_rg = 1.0;
-  return m;
-}
 
 // A closed room with a lamp, a mirror on the wall, a pane across, a glass block and a plastic one:
 // every class of light paths of the table in docs/architecture.md but translucent sheets.

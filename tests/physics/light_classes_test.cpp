@@ -5,6 +5,7 @@
 
 #include "physics/picture_support.h"
 #include "radiosity/solve.h"
+#include "support/materials.h"
 #include "trace/light_classes.h"
 #include "trace/strategy.h"
 
@@ -13,23 +14,10 @@ namespace {
 
 using material::Material;
 using material::SpectralBasis;
+using testing::glass;
+using testing::mirror;
+using testing::plastic;
 using testing::SceneMaker;
-
-Material mirror() {
-  Material m;
-  m.k_df = 0.0;
-  m.k_rg = 1.0;
-  m.n = 0.2;
-  m.kappa = 20.0;
-  return m;
-}
-Material glass(Material::Medium medium) {
-  Material m;
-  m.medium = medium;
-  m.k_df = 0.0;
-  m.k_rg = m.k_tp_rg = 1.0;
-  return m;
-}
 
 // Lit by a spot on a mirror and by a lamp: caustics that paths from the eye do not find.
 scene::Scene spot_room() {
@@ -37,12 +25,7 @@ scene::Scene spot_room() {
   s.box(s.diffuse(0.6), {0, 0, 0}, {3, 2.4, 4}, true);
   s.quad(s.diffuse(0.0, 4.0), {1.0, 2.39, 2.4}, {1, 0, 0}, {0, 0, 1});
   s.quad(s.material(mirror()), {0.01, 0.5, 1.5}, {0, 1.2, 0}, {0, 0, 1.5});
-  Material plastic;
-  plastic.combination = Material::Combination::Coupled;
-  plastic.body_reflectance = 0.6;
-  plastic.k_rg = 1.0;
-  plastic.c = 8.0;
-  s.box(s.material(plastic), {1.6, 0.01, 2.6}, {2.2, 0.7, 3.1}, false);
+  s.box(s.material(plastic()), {1.6, 0.01, 2.6}, {2.2, 0.7, 3.1}, false);
   scene::Light spot;
   spot.kind =
       scene::SpotLight{.intensity = 30.0, .inner_angle = 0.3f, .outer_angle = 0.5f, .falloff = {}};
