@@ -52,9 +52,6 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
     return plan;
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;
-  if (c.method == trace::Method::Hybrid && plan.indirect == trace::Indirect::Mesh)
-    plan.caution =
-        "--indirect mesh: the error of the interpolated radiosity is not in the picture's estimate";
   char text[256];
   if (c.method == trace::Method::Hybrid && c.solution.empty()) {
     const bool caustics = features.mirrors || features.rough || features.solids;

@@ -14,8 +14,7 @@ struct PictureEffort {
   int samples = 0;      ///< of a pixel; with an error asked for the most
   bool spread = false;  ///< ... or the mean, more where the error is
   trace::Indirect indirect = trace::Indirect::Gather;
-  std::string why;      ///< for people, one line
-  std::string caution;  ///< a warning; may be empty
+  std::string why;  ///< for people, one line
 };
 
 /// Effort of the picture that was asked for; sets what the solve shall do (`solve.error`,

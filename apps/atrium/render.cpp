@@ -172,6 +172,7 @@ ViewSummary summarise(const ViewJob& job, const trace::RenderResult& r) {
           .rounds = r.rounds,
           .error_estimate = r.error_estimate,
           .bias_estimate = r.bias_estimate,
+          .field_error_estimate = r.field_error_estimate,
           .block_error_estimate = r.block_error_estimate,
           .fireflies = trace::count_fireflies(r.image),
           .stopped_by = r.stopped_by,
@@ -232,6 +233,14 @@ bool render_view(const Pictures& p, const ViewJob& job, std::size_t number, std:
   if ((c.error > 0.0 || c.block_error > 0.0) && view.stopped_by == "samples")
     p.session.progress.warning("the error asked for is not reached with --samples " +
                                std::to_string(p.effort.samples) + ": " + describe(view));
+  if (view.stopped_by == "radiosity")
+    p.session.progress.warning(
+        "the error asked for is not reached: the radiosity's own is larger, and samples do not "
+        "lower "
+        "it; solve to a smaller error first (atrium solve --error E -o FILE.atrium, then "
+        "--solution "
+        "FILE.atrium) or use --method path: " +
+        describe(view));
   statistics.views.push_back(std::move(view));
   return true;
 }
@@ -322,7 +331,6 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   RenderCommand with_views = c;
   const PictureEffort effort = plan_effort(with_views, *loaded.scene, loaded.features);
   if (!effort.why.empty()) session.detail(effort.why);
-  if (!effort.caution.empty()) session.progress.warning(effort.caution);
   explain_reference(session, c, loaded, statistics);
   statistics.picture_target = c.error;
   statistics.block_target = c.block_error;

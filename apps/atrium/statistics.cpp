@@ -212,6 +212,7 @@ void add_error(JsonWriter& json, const Statistics& s) {
     json.member("estimate", worst.error_estimate);
     json.member("estimate_block", worst.block_error_estimate);
     json.member("bias", worst.bias_estimate);
+    json.member("radiosity", worst.field_error_estimate);
     json.member("stopped_by", worst.stopped_by);
   }
   json.null("ci");
@@ -258,6 +259,7 @@ void add_views(JsonWriter& json, const Statistics& s) {
     json.member("rounds", v.rounds);
     json.member("error_estimate", v.error_estimate);
     json.member("bias_estimate", v.bias_estimate);
+    json.member("radiosity_error_estimate", v.field_error_estimate);
     json.member("block_error_estimate", v.block_error_estimate);
     json.member("fireflies", v.fireflies);
     json.member("stopped_by", v.stopped_by);

@@ -51,7 +51,8 @@ struct ViewSummary {
   int samples = 0;  ///< of a pixel, fewest
   double samples_mean = 0.0;
   int rounds = 0;  ///< towards an error asked for
-  double error_estimate = 0.0, bias_estimate = 0.0, block_error_estimate = 0.0;
+  double error_estimate = 0.0, bias_estimate = 0.0, field_error_estimate = 0.0;
+  double block_error_estimate = 0.0;
   std::uint64_t fireflies = 0;  ///< trace/fireflies.h
   std::string stopped_by;
   bool complete = true;

@@ -17,6 +17,7 @@ void move_mean(Rgb& mean, const Rgb& value, float n) { mean += (value - mean) / 
 Film::Film(int width, int height, const Contents& contents) : width_(width), height_(height) {
   const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   pixels_.resize(n);
+  if (contents.checks) missed_.resize(n);
   if (contents.components) terms_.resize(n);
   if (contents.classes) classes_.emplace(n);
   if (contents.splats) splats_.emplace(n, contents.components, contents.classes);
@@ -73,6 +74,9 @@ void Film::add(int x, int y, std::size_t replicate, const PixelSample<N>& sample
   }
   move_mean(p.replicate[replicate], rgb, static_cast<float>(++p.replicate_count[replicate]));
   const auto n = static_cast<float>(p.count);
+  if (!missed_.empty())
+    move_mean(missed_[i][replicate], basis.to_rgb(sample.field_missed),
+              static_cast<float>(p.replicate_count[replicate]));
   if (!terms_.empty())
     for (std::size_t t = 0; t < kTerms; ++t)
       move_mean(terms_[i][t], basis.to_rgb(sample.term[t]), n);
@@ -223,6 +227,9 @@ PictureSamples Film::develop() {
   if (!bodies_.empty())
     for (auto& half : samples.change)
       for (auto& replicate : half) replicate.resize(pixels_.size());
+  if (!missed_.empty())
+    for (std::size_t r = 0; r < kReplicates; ++r)
+      for (const auto& pixel : missed_) samples.missed[r].push_back(pixel[r]);
   for (std::size_t i = 0; i < pixels_.size(); ++i) put_samples(i, samples);
   return samples;
 }

@@ -24,6 +24,7 @@ class Film {
     bool classes = false;
     bool shares = false;  ///< what sharing between pixels needs
     bool splats = false;  ///< of paths from lights
+    bool checks = false;  ///< what samples say that check the field
   };
   Film(int width, int height, const Contents& contents);
 
@@ -108,6 +109,7 @@ class Film {
   std::vector<Body> bodies_;                    // empty if nothing is shared
   std::vector<Change> changes_;                 // as last developed; empty as bodies_
   std::vector<std::array<Rgb, kTerms>> terms_;  // empty without components
+  std::vector<std::array<Rgb, kReplicates>> missed_;  // by the field; empty without checks
   std::optional<ClassFilm> classes_;
   std::optional<SplatFilm> splats_;
 };

@@ -44,11 +44,12 @@ template <int N>
                                         scene::Sampler& sampler, scene::Counters& counters);
 /// Direct light and specular paths; diffuse inter-reflection from the field (Method::Hybrid) or
 /// not at all (Method::Direct).
-/// \param guide  of the ray's tile.
+/// \param guide  of the ray's tile. \param check  null, or numbers to find out by paths what the
+/// field misses.
 template <int N>
 [[nodiscard]] PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& ray,
                                           GatherGuide& guide, scene::Sampler& sampler,
-                                          scene::Counters& counters);
+                                          scene::Sampler* check, scene::Counters& counters);
 /// The paper's equation, literally.
 template <int N>
 [[nodiscard]] PixelSample<N> trace_paper(const View<N>& view, const scene::Ray& ray,

@@ -26,6 +26,7 @@ void add_pack(RenderResult& sum, const RenderResult& pack) {
   const auto join = [&](double a, double b) { return share * a + (1.0 - share) * b; };
   sum.error_estimate = join(sum.error_estimate, pack.error_estimate);
   sum.bias_estimate = join(sum.bias_estimate, pack.bias_estimate);
+  sum.field_error_estimate = join(sum.field_error_estimate, pack.field_error_estimate);
   sum.block_error_estimate = join(sum.block_error_estimate, pack.block_error_estimate);
   sum.rounds = std::max(sum.rounds, pack.rounds);
   if (pack.stopped_by != "error") sum.stopped_by = pack.stopped_by;

@@ -5,6 +5,7 @@
 
 #include "box_sums.h"
 #include "error_scale.h"
+#include "field_error.h"
 
 namespace atrium::trace {
 namespace {
@@ -106,7 +107,11 @@ ErrorEstimate estimate_error(const PictureSamples& s) {
   }
   e.noise = std::sqrt(noise);
   e.bias = std::sqrt(bias);
-  e.value = std::sqrt(noise + bias);
+  const FieldSquare field = s.checked() ? field_square(s, scale, noise + bias) : FieldSquare{};
+  const double field_part = std::max(0.0, field.mean);
+  e.field = std::sqrt(field_part);
+  e.least_field = std::sqrt(std::max(0.0, field.mean - 2.0 * field.error));
+  e.value = std::sqrt(noise + bias + field_part);
   return e;
 }
 
@@ -151,6 +156,7 @@ PictureSamples average_blocks(const PictureSamples& s, int edge) {
       }
   };
   average(s.mean, r.mean);
+  for (std::size_t k = 0; k < kReplicates; ++k) average(s.missed[k], r.missed[k]);
   for (std::size_t h = 0; h < 2; ++h) {
     average(s.deviation[h], r.deviation[h]);
     for (std::size_t k = 0; k < 2; ++k) average(s.change[h][k], r.change[h][k]);

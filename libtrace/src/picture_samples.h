@@ -26,6 +26,11 @@ struct PictureSamples {
   /// of the bias of sharing as expectation. Empty if nothing is shared.
   std::array<std::array<std::vector<Rgb>, 2>, 2> change;
 
+  /// By replicate: what paths found where the field was read, less what the field said
+  /// (PixelSample::field_missed). Empty if nothing was checked.
+  std::array<std::vector<Rgb>, kReplicates> missed;
+
+  [[nodiscard]] bool checked() const { return !missed[0].empty(); }
   [[nodiscard]] bool shared() const { return !change[0][0].empty(); }
 };
 

@@ -29,6 +29,8 @@ struct PixelSample {
   std::array<Spectrum<N>, kLightClasses> light_class{};  ///< if RenderOptions::classes
   Spectrum<N> albedo;
   Spectrum<N> irradiance;
+  /// What paths found beyond the field where gather rays end, if the sample is one that checks it.
+  Spectrum<N> field_missed;
   Vec3f normal = Vec3f::Zero();
   float depth = 0.0f;  ///< [m] along the ray; 0: nothing hit
 

@@ -65,12 +65,15 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
   const bool blocks_only = options.block_error > 0.0 && !(options.error > 0.0);
   const bool shares = options.share_samples && options.method != Method::Path &&
                       options.mode == Mode::Radiometric && !blocks_only && !options.classes;
+  const bool checks = (options.error > 0.0 || options.block_error > 0.0) && !field.empty() &&
+                      options.method == Method::Hybrid && options.mode == Mode::Radiometric;
   Film film(window.width, window.height,
             {.components = options.components,
              .classes = options.classes,
              .shares = shares,
-             .splats = from_lights});
-  ViewTracer<N> tracer(view, eye, from_lights, control);
+             .splats = from_lights,
+             .checks = checks});
+  ViewTracer<N> tracer(view, eye, from_lights, checks, control);
   RoundState rounds;
   const auto archive = [&](auto& a) {
     const bool fits = film.archive(a) && tracer.archive(a);

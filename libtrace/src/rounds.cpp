@@ -19,6 +19,8 @@ constexpr std::uint32_t kMostOfPixel = 1U << 16;   // samples
 constexpr double kAim = 0.97;    // of the target: a round that just misses it costs another one
 constexpr double kGrowth = 2.0;  // of the cost of the picture in one round
 constexpr double kLeast = 1.1;   // an estimate that is about the target needs some more to move
+constexpr double kNoiseShare =
+    0.25;  // of the square asked for, at least, whatever the field's error
 
 using Clock = std::chrono::steady_clock;
 
@@ -34,6 +36,12 @@ Errors estimate(const PictureSamples& samples) {
 double excess(const Errors& e, const RenderOptions& o) {
   return std::max(o.error > 0.0 ? e.pixel.value / o.error : 0.0,
                   o.block_error > 0.0 ? e.block.value / o.block_error : 0.0);
+}
+
+/// The same of what is certainly the field's error, which samples do not lower.
+double certain_excess(const Errors& e, const RenderOptions& o) {
+  return std::max(o.error > 0.0 ? e.pixel.least_field / o.error : 0.0,
+                  o.block_error > 0.0 ? e.block.least_field / o.block_error : 0.0);
 }
 
 std::string remark_of(const Errors& e, const RenderOptions& o) {
@@ -101,6 +109,10 @@ class Rounds {
         result_.stopped_by = "error";
         return;
       }
+      if (certain_excess(now, options_) > 1.0) {
+        result_.stopped_by = "radiosity";
+        return;
+      }
       const double done = 1.0 / (e * e);
       if (!plan_round(now, e, most)) {
         result_.stopped_by = "samples";
@@ -117,8 +129,10 @@ class Rounds {
     result_.rounds = state_.rounds;
     result_.error_estimate = e.pixel.value;
     result_.bias_estimate = e.pixel.bias;
+    result_.field_error_estimate = e.pixel.field;
     result_.block_error_estimate = e.block.value;
-    result_.complete = result_.stopped_by == "error" || result_.stopped_by == "samples";
+    result_.complete = result_.stopped_by == "error" || result_.stopped_by == "samples" ||
+                       result_.stopped_by == "radiosity";
     result_.image = film_.image(error_layer(samples));
     film_.count_samples(result_.samples_done, result_.samples_mean);
   }
@@ -151,7 +165,9 @@ class Rounds {
     const ErrorEstimate& e = now.pixel;
     plan_from(now);
     const double reduce = std::max(excess / kAim, std::sqrt(kLeast));
-    samples_ = allot_samples(plan_, {.goal = e.value / reduce, .growth = kGrowth, .most = most});
+    const double square = (e.value / reduce) * (e.value / reduce);
+    const double goal = std::sqrt(std::max(square - e.field * e.field, kNoiseShare * square));
+    samples_ = allot_samples(plan_, {.goal = goal, .growth = kGrowth, .most = most});
     if (samples_ != plan_.count) return true;
     // Nothing to tell pixels apart by: all of them.
     for (std::uint32_t& n : samples_)

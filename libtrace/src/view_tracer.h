@@ -32,10 +32,10 @@ struct Tile {
 template <int N>
 [[nodiscard]] PixelSample<N> trace_from_eye(const View<N>& view, const scene::Ray& ray,
                                             GatherGuide& guide, scene::Sampler& sampler,
-                                            scene::Counters& counters) {
+                                            scene::Sampler* check, scene::Counters& counters) {
   if (view.options.mode == Mode::Paper) return trace_paper(view, ray, sampler, counters);
   if (view.options.method == Method::Path) return trace_path(view, ray, sampler, counters);
-  return trace_hybrid(view, ray, guide, sampler, counters);
+  return trace_hybrid(view, ray, guide, sampler, check, counters);
 }
 
 // Workers report through one of them at a time; the others go on.
@@ -57,11 +57,14 @@ class SerialProgress {
 template <int N>
 class ViewTracer {
  public:
-  ViewTracer(const View<N>& view, const Eye& eye, bool from_lights, const scene::Control& control)
+  /// \param from_lights  paths from lights, too. \param checks  some samples check the field.
+  ViewTracer(const View<N>& view, const Eye& eye, bool from_lights, bool checks,
+             const scene::Control& control)
       : view_(view),
         eye_(eye),
         window_(eye.window),
         from_lights_(from_lights),
+        checks_(checks),
         control_(control),
         tiles_(tiles_of(eye.window.width, eye.window.height)),
         guides_(tiles_.size()),
@@ -227,8 +230,24 @@ class ViewTracer {
     if (from_lights_) trace_light(pixel, number, work, counters);
     film.add(x, y, replicate,
              from_lights_ ? trace_bidirectional(view_, eye_, ray, work.path, sampler, counters)
-                          : trace_from_eye(view_, ray, guide, sampler, counters),
+                          : trace_and_check(ray, pixel, number, guide, sampler, counters),
              view_.shading.basis(), counters);
+  }
+
+  /// Every kCheckEvery-th sample checks the field, from a random one of each pixel and replicate
+  /// on, with numbers of its own: the picture is the same with and without.
+  PixelSample<N> trace_and_check(const scene::Ray& ray, std::uint32_t pixel, std::uint32_t number,
+                                 GatherGuide& guide, scene::Sampler& sampler,
+                                 scene::Counters& counters) {
+    constexpr auto kSets = static_cast<std::uint32_t>(kReplicates);
+    const std::uint32_t stream = scene::hash_combine(pixel, number % kSets);
+    const std::uint32_t index = number / kSets;
+    const bool checked = checks_ && (scene::hash32(stream) + index) % kCheckEvery == 0;
+    scene::Sampler numbers(view_.options.seed ^ kCheckStream, stream, index);
+    PixelSample<N> sample =
+        trace_from_eye(view_, ray, guide, sampler, checked ? &numbers : nullptr, counters);
+    sample.field_missed *= static_cast<float>(kCheckEvery);
+    return sample;
   }
 
   /// The path from a light that belongs to a sample. All of a picture's are one sequence.
@@ -253,12 +272,15 @@ class ViewTracer {
   // waits for the end of such a piece: sums have the same order whether there was one or not.
   static constexpr std::size_t kTilesAtOnce = 64;
   static constexpr std::uint32_t kSamplesAtOnce = 4;
+  static constexpr std::uint64_t kCheckStream = 0x636865636b21ULL;
+  static constexpr std::uint32_t kCheckEvery = 16;
   static constexpr std::uint64_t kLightStream = 0x6c696768747321ULL;
 
   const View<N>& view_;
   const Eye& eye_;
   const PixelWindow& window_;
   const bool from_lights_;
+  const bool checks_;
   const scene::Control& control_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<Tile> tiles_;

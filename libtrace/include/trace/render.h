@@ -87,8 +87,11 @@ struct RenderResult {
   int rounds = 0;                     ///< after the first samples of every pixel, towards an error
   double error_estimate = 0.0;        ///< RMS of the relative error per pixel (trace/compare.h)
   double bias_estimate = 0.0;         ///< its part that sharing between pixels causes
+  double field_error_estimate = 0.0;  ///< its part by the field; 0 without an error asked for
   double block_error_estimate = 0.0;  ///< after averaging 8x8 pixels
-  std::string stopped_by;             ///< "error" (reached), "samples", "time limit", "interrupt"
+  /// "error" (reached), "radiosity" (the field's own error is larger, with 95 % certainty),
+  /// "samples", "time limit", "interrupt"
+  std::string stopped_by;
   bool complete = true;               ///< false: stopped by time or request
 };
 
