@@ -3,6 +3,7 @@
 #include "attribution.h"
 #include "scene/camera_film.h"
 #include "scene/roulette.h"
+#include "scene/segment.h"
 
 namespace atrium::trace {
 
@@ -43,13 +44,9 @@ struct EyeVertex {
 /// What of the light passes between two surfaces; `far` is seen from the near one.
 template <int N>
 Spectrum<N> between(const scene::Shading<N>& shading, const scene::SurfacePoint& near,
-                    const scene::Interaction<N>& far, const Vec3f& direction,
-                    scene::Counters& counters) {
-  const Vec3f origin = scene::offset_origin(near, direction);
-  const Vec3f d = scene::offset_origin(far.point, -direction) - origin;
-  const float length = d.norm();
-  if (!(d.dot(direction) > 0.0f)) return Spectrum<N>::one();
-  const scene::Ray ray{origin, d / length, 0.0f, length};
+                    const scene::Interaction<N>& far, scene::Counters& counters) {
+  const scene::Ray ray = scene::segment(near, far.point);
+  if (!(ray.tmax > 0.0f)) return Spectrum<N>::one();
   Spectrum<N> t = shading.transmittance(ray, counters, Counter::RaysShadow);
   const bool inside =
       far.side == scene::Side::Back &&
@@ -57,10 +54,10 @@ Spectrum<N> between(const scene::Shading<N>& shading, const scene::SurfacePoint&
   if (!inside || t.is_zero()) return t;
   // Not the air is between them but the body.
   if (shading.has_medium()) {
-    const Spectrum<N> air = shading.through_medium(ray, length);
+    const Spectrum<N> air = shading.through_medium(ray, ray.tmax);
     t = Spectrum<N>::generate([&](int i) { return air[i] > 0.0f ? t[i] / air[i] : 0.0f; });
   }
-  return t * exp_minus(far.bsdf.extinction(), length);
+  return t * exp_minus(far.bsdf.extinction(), ray.tmax);
 }
 
 /// Light from a sampled light at a vertex of the path.
@@ -111,7 +108,7 @@ void connect(const View<N>& view, const EyeVertex<N>& at, const LightVertex<N>& 
                          (here->cosine * there->cosine * cos_light / (arriving * distance2));
   if (radiance.is_zero()) return;
   const SeenFrom<N> far(view.shading, light.surface, -w);
-  radiance *= between(view.shading, surface.point, *far, w, counters);
+  radiance *= between(view.shading, surface.point, *far, counters);
   if (radiance.is_zero()) return;
 
   const auto area = [&](float pdf, float cosine) {

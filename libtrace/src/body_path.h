@@ -65,9 +65,11 @@ class BodyPath {
   void add_lights(const Body& body, const GatherDirections<N>& directions) {
     const DirectLight<N> d = direct_light(view_, body.surface, body.wo, &directions,
                                           Lobes::LeftToCaustics, sampler_, counters_);
+    sum_ += beta_ * (d.reflected + d.transmitted);
+    if (view_.field.irradiance.caustic.empty()) return;
     const FieldRadiance<N> caustic =
         FieldPoint<N>(view_, body.surface).radiance(body.wo, {false, true, false});
-    sum_ += beta_ * (d.reflected + d.transmitted + caustic.reflected + caustic.transmitted);
+    sum_ += beta_ * (caustic.reflected + caustic.transmitted);
   }
 
   /// The body that a ray from this one meets, if need be by specular events.
