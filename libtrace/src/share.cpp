@@ -77,15 +77,82 @@ Illumination unpack(const Levels& levels) {
   return out;
 }
 
+/// One level. The weight of a pair of pixels is the same both ways (what a pixel gives away others
+/// receive), so it is found once: by the pixel that comes first.
 class Level {
  public:
-  // Weights are the same from p to q as from q to p: what a pixel gives away others receive.
   Level(const ShareGuides& guides, const Levels& in, int step)
       : g_(guides), in_(in), step_(step), noise_(in.variance.size()) {
     for_rows(guides, [&](int x, int y) { noise_[index(x, y)] = blurred_variance(x, y); });
   }
 
-  void pixel(int x, int y, Levels& out) const {
+  /// Rows that are `step` apart see only each other: each such strip is done piece by piece.
+  void run(Levels& out) const {
+    std::vector<Piece> pieces;
+    for (int residue = 0; residue < std::min(step_, g_.height); ++residue) {
+      const int rows = (g_.height - residue + step_ - 1) / step_;
+      for (int first = 0; first < rows; first += kPiece)
+        pieces.push_back({residue, rows, first, std::min(rows, first + kPiece)});
+    }
+    scene::parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+      std::array<Row, 3> pairs;  // of the last three rows
+      for (std::size_t k = begin; k < end; ++k) piece(pieces[k], pairs, out);
+    });
+  }
+
+ private:
+  /// Pixels that come after a pixel within the spline's reach, in steps. The corners of the spline
+  /// are 1/64 of it and left out.
+  struct Tap {
+    int dx, dy;
+  };
+  static constexpr std::array<Tap, 10> kTaps{
+      {{1, 0}, {2, 0}, {-2, 1}, {-1, 1}, {0, 1}, {1, 1}, {2, 1}, {-1, 2}, {0, 2}, {1, 2}}};
+  static constexpr int kPiece = 16;  // rows
+  /// Some rows of a strip of `rows`.
+  struct Piece {
+    int residue, rows, first, end;
+  };
+  using Weights = std::array<float, 2>;                        // by guiding half
+  using Row = std::vector<std::array<Weights, kTaps.size()>>;  // by x
+
+  static float spline(const Tap& tap) {
+    return kSpline[static_cast<std::size_t>(std::abs(tap.dx))] *
+           kSpline[static_cast<std::size_t>(std::abs(tap.dy))];
+  }
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(g_.width) +
+           static_cast<std::size_t>(x);
+  }
+
+  void piece(const Piece& p, std::array<Row, 3>& pairs, Levels& out) const {
+    for (int row = std::max(0, p.first - 2); row < p.end; ++row) {
+      find_pairs(p, row, pairs[static_cast<std::size_t>(row % 3)]);
+      if (row < p.first) continue;
+      for (int x = 0; x < g_.width; ++x) pixel(p, row, x, pairs, out);
+    }
+  }
+
+  /// Weights between the pixels of a row and those that come after them.
+  void find_pairs(const Piece& p, int row, Row& pairs) const {
+    pairs.assign(static_cast<std::size_t>(g_.width), {});
+    const int y = p.residue + row * step_;
+    for (int x = 0; x < g_.width; ++x) {
+      const std::size_t here = index(x, y);
+      if (!(g_.depth[here] > 0.0f)) continue;
+      for (std::size_t t = 0; t < kTaps.size(); ++t) {
+        const int qx = x + kTaps[t].dx * step_;
+        if (qx < 0 || qx >= g_.width || row + kTaps[t].dy >= p.rows) continue;
+        Weights w = alike(here, index(qx, y + kTaps[t].dy * step_));
+        for (float& v : w) v *= spline(kTaps[t]);
+        pairs[static_cast<std::size_t>(x)][t] = w;
+      }
+    }
+  }
+
+  void pixel(const Piece& piece, int row, int x, const std::array<Row, 3>& pairs,
+             Levels& out) const {
+    const int y = piece.residue + row * step_;
     const std::size_t p = index(x, y);
     if (!(g_.depth[p] > 0.0f)) {
       out.light[p] = in_.light[p];
@@ -94,23 +161,24 @@ class Level {
     }
     std::array<Guided, 2> sum;
     std::array<float, 2> weights{}, variance{};
-    for (int dy = -2; dy <= 2; ++dy)
-      for (int dx = -2; dx <= 2; ++dx) {
-        const int qx = x + dx * step_, qy = y + dy * step_;
-        if (std::abs(dx * dy) == 4) continue;  // the corners of the spline are 1/64 of it
-        if (qx < 0 || qy < 0 || qx >= g_.width || qy >= g_.height) continue;
-        const std::size_t q = index(qx, qy);
-        const float spline = kSpline[static_cast<std::size_t>(std::abs(dx))] *
-                             kSpline[static_cast<std::size_t>(std::abs(dy))];
-        const Weights likeness = p == q ? Weights{1.0f, 1.0f} : alike(p, q);
-        for (std::size_t h = 0; h < 2; ++h) {
-          const float w = spline * likeness[h];
-          if (!(w > 0.0f)) continue;
-          sum[h].add(in_.light[q][h], w);
-          weights[h] += w;
-          variance[h] += w * w * in_.variance[q];
-        }
+    const auto add = [&](std::size_t q, const Weights& w) {
+      for (std::size_t h = 0; h < 2; ++h) {
+        if (!(w[h] > 0.0f)) continue;
+        sum[h].add(in_.light[q][h], w[h]);
+        weights[h] += w[h];
+        variance[h] += w[h] * w[h] * in_.variance[q];
       }
+    };
+    add(p, {spline({0, 0}), spline({0, 0})});
+    for (std::size_t t = 0; t < kTaps.size(); ++t) {
+      const int dx = kTaps[t].dx * step_, dy = kTaps[t].dy;
+      if (x + dx >= 0 && x + dx < g_.width && row + dy < piece.rows)
+        add(index(x + dx, y + dy * step_),
+            pairs[static_cast<std::size_t>(row % 3)][static_cast<std::size_t>(x)][t]);
+      if (x - dx >= 0 && x - dx < g_.width && row - dy >= 0)
+        add(index(x - dx, y - dy * step_),
+            pairs[static_cast<std::size_t>((row - dy) % 3)][static_cast<std::size_t>(x - dx)][t]);
+    }
     // From the second level on neighbours hold some of the same samples: composed, the splines
     // divide the variance by 4 per level where independent pixels would divide it by 13.
     constexpr float kOverlap = 3.3f;
@@ -123,11 +191,6 @@ class Level {
     out.variance[p] = step_ > 1 ? std::min(kOverlap * independent, in_.variance[p]) : independent;
   }
 
- private:
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(g_.width) +
-           static_cast<std::size_t>(x);
-  }
   // The variance of one pixel is itself noisy: a pixel that no bright sample has hit looks certain.
   [[nodiscard]] float blurred_variance(int x, int y) const {
     float sum = 0.0f, weights = 0.0f;
@@ -144,9 +207,8 @@ class Level {
       }
     return weights > 0.0f ? sum / weights : 0.0f;
   }
-  /// How much of q's light p takes, by guiding half: as far as they are of one surface and differ
-  /// by no more than noise explains.
-  using Weights = std::array<float, 2>;
+  /// How much of q's light p takes, and p of q's, by guiding half: as far as they are of one
+  /// surface and differ by no more than noise explains.
   [[nodiscard]] Weights alike(std::size_t p, std::size_t q) const {
     if (!(g_.depth[q] > 0.0f)) return {};
     const float cosine = g_.normal[p].dot(g_.normal[q]);
@@ -191,8 +253,7 @@ std::vector<Illumination> share_by_levels(const ShareGuides& guides, Illuminatio
   std::vector<Illumination> kept{std::move(illumination)};
   Levels next = now;
   for (int level = 0; level < kLevels; ++level) {
-    const Level pass(guides, now, 1 << level);
-    for_rows(guides, [&](int x, int y) { pass.pixel(x, y, next); });
+    Level(guides, now, 1 << level).run(next);
     std::swap(now, next);
     if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(unpack(now));
   }
