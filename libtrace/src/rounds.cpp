@@ -19,8 +19,8 @@ constexpr std::uint32_t kMostOfPixel = 1U << 16;   // samples
 constexpr double kAim = 0.97;    // of the target: a round that just misses it costs another one
 constexpr double kGrowth = 2.0;  // of the cost of the picture in one round
 constexpr double kLeast = 1.1;   // an estimate that is about the target needs some more to move
-constexpr double kNoiseShare =
-    0.25;  // of the square asked for, at least, whatever the field's error
+constexpr double kNoiseShare = 0.25;  // of the square asked for, at least, is left to noise
+constexpr double kStep = 1.25;        // what a round lowers the square of the noise by, at least
 
 using Clock = std::chrono::steady_clock;
 
@@ -166,7 +166,10 @@ class Rounds {
     plan_from(now);
     const double reduce = std::max(excess / kAim, std::sqrt(kLeast));
     const double square = (e.value / reduce) * (e.value / reduce);
-    const double goal = std::sqrt(std::max(square - e.field * e.field, kNoiseShare * square));
+    // Room for noise: what the field surely leaves, as more samples may lower its own estimate.
+    const double room = std::max(square - e.least_field * e.least_field, kNoiseShare * square);
+    const double noise = e.value * e.value - e.field * e.field;
+    const double goal = std::sqrt(std::min(room, noise / kStep));
     samples_ = allot_samples(plan_, {.goal = goal, .growth = kGrowth, .most = most});
     if (samples_ != plan_.count) return true;
     // Nothing to tell pixels apart by: all of them.
