@@ -9,7 +9,6 @@
 
 #include "hash64.h"
 #include "material/error.h"
-#include "material_query/query.h"
 #include "scene/camera_path.h"
 #include "scene/image_io.h"
 #include "scene/luminaire.h"
@@ -105,10 +104,6 @@ void read_epw(const fs::path& folder, Bytes input) {
   static_cast<void>(scene::read_epw(put(folder, "input.epw", input), 6, 21, 12));
 }
 
-void read_material(const fs::path&, Bytes input) {
-  static_cast<void>(material_query::answer_queries(std::string(input.begin(), input.end())));
-}
-
 /// Look-ups trust what read_solution() has checked.
 void look_up(const scene::SurfaceField& field) {
   const std::size_t facets = std::min<std::size_t>(field.facets.size(), 20);
@@ -161,12 +156,14 @@ constexpr std::array kReaders = {
     Reader{"ies", &read_ies},
     Reader{"eulumdat", &read_eulumdat},
     Reader{"epw", &read_epw},
-    Reader{"material", &read_material},
     Reader{"solution", &read_solution},
     Reader{"pfm", &read_pfm},
     Reader{"texture", &read_texture},
     Reader{"walk", &read_walk},
+#ifdef ATRIUM_WITH_APPS
     Reader{"config", &read_config},
+    Reader{"material", &read_material},
+#endif
 #ifdef ATRIUM_WITH_RADIOSITY
     Reader{"sensors", &read_sensors},
     Reader{"state", &read_state},

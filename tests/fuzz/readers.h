@@ -34,7 +34,10 @@ std::filesystem::path put(const std::filesystem::path& folder, const std::string
 /// What stands at the end of files that Atrium keeps for itself.
 [[nodiscard]] std::vector<std::uint8_t> with_checksum(std::vector<std::uint8_t> bytes);
 
+#ifdef ATRIUM_WITH_APPS
 void read_config(const std::filesystem::path& folder, Bytes input);
+void read_material(const std::filesystem::path& folder, Bytes input);
+#endif
 #ifdef ATRIUM_WITH_RADIOSITY
 void read_sensors(const std::filesystem::path& folder, Bytes input);
 void read_state(const std::filesystem::path& folder, Bytes input);

@@ -4,6 +4,7 @@
 
 #include "atrium/options.h"
 #include "fuzz/readers.h"
+#include "material_query/query.h"
 #ifdef ATRIUM_WITH_RADIOSITY
 #include "atrium/sensor_file.h"
 #endif
@@ -30,6 +31,10 @@ void read_config(const std::filesystem::path& folder, Bytes input) {
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   static_cast<void>(app::parse_command_line(static_cast<int>(pointers.size()), pointers.data()));
+}
+
+void read_material(const std::filesystem::path&, Bytes input) {
+  static_cast<void>(material_query::answer_queries(std::string(input.begin(), input.end())));
 }
 
 #ifdef ATRIUM_WITH_RADIOSITY
