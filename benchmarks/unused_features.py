@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What a feature costs a scene that does not use it: instructions (callgrind) and memory (largest
-resident size) with the feature enabled against the same run without it, on one thread.
+resident size, median of ten runs) with the feature enabled against the same run without it, on one thread.
 
     cmake --preset release && cmake --build build/release --target atrium
     benchmarks/unused_features.py build/release/bin/atrium > table.md
@@ -9,6 +9,8 @@ Also start-up: processor time of the process before a scene is read, over 50 run
 not depend on what else runs on the machine.
 """
 import argparse
+import base64
+import functools
 import pathlib
 import re
 import resource
@@ -35,23 +37,41 @@ UNUSED_MATERIALS = """  glass: {medium: solid, ior: 1.5}
   gold: {ior: {n: 0.2, k: 3}, c: 10}
   sheet: {k_tp_df: 1, body: 0.4, body_transmission: 0.3}
 """
+UNUSED_IMAGE = "  painted: {body_texture: grey.png}\n"
 UNUSED_CAMERAS = "".join(
     f"  - {{name: c{i}, panorama: {{eye: [1, 1, {1 + 0.1 * i}], target: [0, 1, 0]}}}}\n" for i in range(8))
 
-RENDER = "render {scene} -o {out}.pfm --method direct --size 32x24 --samples 4 --threads 1 --quiet"
+PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==")
+
+DIRECT = "render room.yaml -o room.pfm --method direct --size 32x24 --samples 4 --threads 1 --quiet"
+HYBRID = "render room.yaml -o room.pfm --error 0.5 --size 32x24 --threads 1 --quiet"
+PATH = "render room.yaml -o room.pfm --method path --size 32x24 --samples 8 --threads 1 --quiet"
 
 # name, command, scene and options with the feature enabled but unused, scene and options without
 FEATURES = [
-    ("pane detection, no glass", RENDER, {}, "", {}, "--no-pane-detection"),
-    ("choice of spectral lanes, grey scene", RENDER, {}, "", {}, "--spectrum grey"),
-    ("materials of glass, panes, metal, sheets that no object has", RENDER,
+    ("pane detection, no glass", DIRECT, {}, "", {}, "--no-pane-detection"),
+    ("choice of spectral lanes, grey scene", DIRECT, {}, "", {}, "--spectrum grey"),
+    ("materials of glass, panes, metal, sheets that no object has", DIRECT,
      {"materials": UNUSED_MATERIALS}, "", {}, ""),
-    ("eight more cameras", RENDER, {"cameras": UNUSED_CAMERAS}, "", {}, ""),
-    ("openings to the sky, no sky", RENDER, {}, "", {"head": "portals: {find: false}\n"}, ""),
-    ("air that absorbs, by nothing", RENDER, {"head": "medium: {extinction: 0}\n"}, "", {}, ""),
-    ("limit of time that is not reached", RENDER, {}, "--time-limit 100000", {}, ""),
-    ("one light group", RENDER, {"group": "light_group: day, "}, "", {}, ""),
-    ("statistics of the run", RENDER, {}, "--stats stats.json", {}, ""),
+    ("an image that no object has", DIRECT, {"materials": UNUSED_IMAGE}, "", {}, ""),
+    ("eight more cameras", DIRECT, {"cameras": UNUSED_CAMERAS}, "", {}, ""),
+    ("openings to the sky, no sky", DIRECT, {}, "", {"head": "portals: {find: false}\n"}, ""),
+    ("air that absorbs, by nothing", DIRECT, {"head": "medium: {extinction: 0}\n"}, "", {}, ""),
+    ("limit of time that is not reached", DIRECT, {}, "--time-limit 100000", {}, ""),
+    ("one light group", DIRECT, {"group": "light_group: day, "}, "", {}, ""),
+    ("statistics of the run", DIRECT, {}, "--stats stats.json", {}, ""),
+    ("hybrid: pane detection, no glass", HYBRID, {}, "", {}, "--no-pane-detection"),
+    ("hybrid: choice of spectral lanes, grey scene", HYBRID, {}, "", {}, "--spectrum grey"),
+    ("hybrid: materials of mirrors, glass, lobes, sheets that no object has", HYBRID,
+     {"materials": UNUSED_MATERIALS}, "", {}, ""),
+    ("hybrid: openings to the sky, no sky", HYBRID, {}, "", {"head": "portals: {find: false}\n"}, ""),
+    ("hybrid: air that absorbs, by nothing", HYBRID, {"head": "medium: {extinction: 0}\n"}, "", {}, ""),
+    ("hybrid: one light group", HYBRID, {"group": "light_group: day, "}, "", {}, ""),
+    ("hybrid: eight more cameras", HYBRID, {"cameras": UNUSED_CAMERAS}, "", {}, ""),
+    ("hybrid: limits of time and memory that are not reached", HYBRID, {},
+     "--time-limit 100000 --memory-limit 20000", {}, ""),
+    ("path: choice of paths from both ends, no caustics", PATH, {"materials": UNUSED_MATERIALS}, "", {}, ""),
+    ("path: a checkpoint that is not taken up", PATH, {}, "--checkpoint kept", {}, ""),
 ]
 
 
@@ -62,20 +82,23 @@ def instructions(command, folder):
 
 
 def resident_mb(command, folder):
-    """Least of three runs: whatever else happens only adds."""
+    """Median of ten runs: with random addresses some runs have half a megabyte less."""
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
             "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
     sizes = [int(subprocess.run([sys.executable, "-c", code] + command, capture_output=True, text=True,
-                                check=True, cwd=folder).stdout) for _ in range(3)]
-    return min(sizes) / 1024
+                                check=True, cwd=folder).stdout) for _ in range(10)]
+    return statistics.median(sizes) / 1024
 
 
-def measure(atrium, folder, template, scene, options, label):
-    values = {"head": "", "materials": "", "group": "", "cameras": ""} | scene
-    file = pathlib.Path(folder) / f"{label}.yaml"
-    file.write_text(ROOM.format(**values))
-    command = [atrium] + template.format(scene=file, out=label).split() + options.split()
+@functools.cache
+def measure(atrium, folder, template, room, options):
+    (pathlib.Path(folder) / "room.yaml").write_text(room)
+    command = [atrium] + template.split() + options.split()
     return instructions(command, folder), resident_mb(command, folder)
+
+
+def room(parts):
+    return ROOM.format(**({"head": "", "materials": "", "group": "", "cameras": ""} | parts))
 
 
 def cpu_ms(command):
@@ -101,15 +124,19 @@ def start_up(atrium, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("atrium", type=lambda p: str(pathlib.Path(p).resolve()))
+    parser.add_argument("--only", default="", metavar="TEXT", help="features with TEXT in their name")
     arguments = parser.parse_args()
     failed = False
     with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "grey.png").write_bytes(PIXEL)
         start_up(arguments.atrium, folder)
         print("\n| feature, enabled and not used | instructions with [million] | without | difference | "
               "memory with [MB] | without | difference |\n| --- | --- | --- | --- | --- | --- | --- |")
         for name, template, scene, options, plain, off in FEATURES:
-            with_it = measure(arguments.atrium, folder, template, scene, options, "with")
-            without = measure(arguments.atrium, folder, template, plain, off, "without")
+            if arguments.only not in name:
+                continue
+            with_it = measure(arguments.atrium, folder, template, room(scene), options)
+            without = measure(arguments.atrium, folder, template, room(plain), off)
             difference = [100 * (a / b - 1) for a, b in zip(with_it, without)]
             failed |= max(difference) >= 2.0
             print(f"| {name} | {with_it[0] / 1e6:.1f} | {without[0] / 1e6:.1f} | {difference[0]:+.2f} % | "

@@ -27,6 +27,8 @@ case "$target" in
   obj) sources="$scene/read_obj.cpp $scene/obj_material.cpp /usr/include/tiny_obj_loader.h" ;;
   yaml) sources="$scene/yaml_*.cpp $scene/read_yaml.cpp" ;;
   material) sources="apps/material_query/*.cpp" ;;
+  walk) sources="$scene/yaml_path.cpp" ;;
+  config) sources="apps/atrium/parse*.cpp apps/common/cli_options.cpp" ;;
   vtp | vtu) sources="tests/fuzz/seeds/$target/*" ;;
   *) sources="$scene/read_$target.cpp" ;;
 esac

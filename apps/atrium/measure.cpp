@@ -10,6 +10,7 @@
 
 #ifdef ATRIUM_WITH_RADIOSITY
 #include "sensor_table.h"
+#include "sensor_file.h"
 #include "sensors.h"
 #endif
 

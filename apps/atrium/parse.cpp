@@ -1,5 +1,6 @@
 // The command line as a whole; the options of each command are in parse_*.cpp.
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 
 #include "command_parser.h"
@@ -15,6 +16,17 @@ std::string join(int argc, char** argv) {
   std::string line = "atrium";
   for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
   return line;
+}
+
+/// CLI11 would read a device without end.
+std::string config_file(const std::string& file) {
+  constexpr std::uintmax_t kMostBytes = 1 << 20;
+  std::error_code unknown;
+  if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown))
+    return file + ": not a file";
+  if (!unknown && std::filesystem::file_size(file, unknown) > kMostBytes && !unknown)
+    return file + ": larger than " + std::to_string(kMostBytes) + " bytes";
+  return {};
 }
 
 struct KnownCommand {
@@ -41,7 +53,8 @@ struct Parser {
   Parser() {
     app.set_version_flag("--version", std::string("atrium ") + ATRIUM_VERSION);
     app.set_config("--config", "", "read options from a file as --print-config writes it")
-        ->configurable(false);
+        ->configurable(false)
+        ->check(config_file, "FILE");
     app.add_flag("--print-config", print_config, "print all options in effect and leave")
         ->configurable(false);
     app.require_subcommand(1);

@@ -9,10 +9,6 @@
 
 namespace atrium::app {
 
-/// One sensor per line, "x y z nx ny nz" in metres, separated by blanks, commas or semicolons;
-/// normals of any length; # starts a comment. \throws Error "FILE:line: ..." for anything else.
-[[nodiscard]] std::vector<radiosity::Sensor> read_sensors(const std::string& file);
-
 /// At the centres of the cells of a grid, looking along u x v.
 [[nodiscard]] std::vector<radiosity::Sensor> grid_sensors(const SensorGrid& grid);
 

@@ -127,7 +127,7 @@ Sweep reflectance(Extent extent) {
     s.cases.push_back(
         {text(rho) + ", matrix", [rho] { return of_furnace(rho, Solver::Matrix, false); }});
     // Bounce by bounce: not where light takes ten thousand of them.
-    if (rho < 0.95)
+    if (rho < 0.9995)
       s.cases.push_back(
           {text(rho) + ", shooting", [rho] { return of_furnace(rho, Solver::Shooting, false); }});
   }

@@ -2,7 +2,6 @@
 
 #include <variant>
 
-#include "material/error.h"
 #include "scene/light.h"
 
 namespace atrium::radiosity {
@@ -73,11 +72,11 @@ void archive_light(Archive& a, scene::Light& light) {
 /// \param lights  to write, or what is read.
 template <class Archive>
 void archive_lights(Archive& a, std::vector<scene::Light>& lights) {
-  constexpr std::uint64_t kMost = 1000000;
-  std::uint64_t count = lights.size();
-  a(count);
-  if (count > kMost) throw Error("radiosity: the solution's state is damaged");
-  lights.resize(count);
+  constexpr std::size_t kLeastBytes = 16 * sizeof(double);  // of a light's frame
+  if constexpr (requires { a.count(kLeastBytes); })
+    lights.resize(a.count(kLeastBytes));
+  else
+    a(static_cast<std::uint64_t>(lights.size()));
   for (scene::Light& light : lights) archive_light(a, light);
 }
 

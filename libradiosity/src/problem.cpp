@@ -12,16 +12,20 @@ using scene::SurfacePoint;
 
 namespace {
 
-/// By which a polygon has to shrink for its points to keep clear of its edges.
-float shrink_of(const ElementPiece& piece) {
-  float perimeter = 0.0f;
-  float size = 0.0f;
+/// By which a polygon has to shrink towards its middle for its points to keep clear of its edges:
+/// by the rounding of coordinates across each of them. Along a long wall they may be coarse.
+float shrink_of(const ElementPiece& piece, const Vec3f& middle, const Vec3f& normal) {
+  Vec3f size = Vec3f::Zero();
+  for (const Vec3f& corner : piece.corners) size = size.cwiseMax(corner.cwiseAbs());
+  float shrink = 0.0f;
   for (std::size_t k = 0; k < piece.corners.size(); ++k) {
-    perimeter += (piece.corners[(k + 1) % piece.corners.size()] - piece.corners[k]).norm();
-    size = std::max(size, piece.corners[k].cwiseAbs().maxCoeff());
+    const Vec3f edge = piece.corners[(k + 1) % piece.corners.size()] - piece.corners[k];
+    const Vec3f across = normal.cross(edge);  // as long as the edge
+    const float rounding = 0x1p-21f * across.cwiseAbs().dot(size);
+    const float distance = std::abs(across.dot(middle - piece.corners[k]));
+    if (rounding > 0.0f) shrink = std::max(shrink, distance > 0.0f ? rounding / distance : 0.5f);
   }
-  const float inradius = 2.0f * piece.area / perimeter;
-  return std::min(0.5f, 0x1p-21f * size / inradius);
+  return std::min(0.5f, shrink);
 }
 
 }  // namespace
@@ -36,10 +40,10 @@ ElementPoints::ElementPoints(const scene::Scene& scene, const Elements& elements
       const auto& piece = elements.pieces[p];
       const SurfacePoint point =
           scene::surface_point(scene, piece.object, piece.triangle, 1.0f / 3, 1.0f / 3);
-      const float shrink = shrink_of(piece);
       Vec3f middle = Vec3f::Zero();
       for (const Vec3f& corner : piece.corners) middle += corner;
       middle /= static_cast<float>(piece.corners.size());
+      const float shrink = shrink_of(piece, middle, point.ng);
       const Vec3f corner = piece.corners[0] + shrink * (middle - piece.corners[0]);
       for (std::size_t c = 1; c + 1 < piece.corners.size(); ++c) {
         const Vec3f edge1 = piece.corners[c] - piece.corners[0];

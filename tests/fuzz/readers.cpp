@@ -9,7 +9,7 @@
 
 #include "hash64.h"
 #include "material/error.h"
-#include "material_query/query.h"
+#include "scene/camera_path.h"
 #include "scene/image_io.h"
 #include "scene/luminaire.h"
 #include "scene/scene_io.h"
@@ -104,10 +104,6 @@ void read_epw(const fs::path& folder, Bytes input) {
   static_cast<void>(scene::read_epw(put(folder, "input.epw", input), 6, 21, 12));
 }
 
-void read_material(const fs::path&, Bytes input) {
-  static_cast<void>(material_query::answer_queries(std::string(input.begin(), input.end())));
-}
-
 /// Look-ups trust what read_solution() has checked.
 void look_up(const scene::SurfaceField& field) {
   const std::size_t facets = std::min<std::size_t>(field.facets.size(), 20);
@@ -127,12 +123,8 @@ void look_up(const scene::SurfaceField& field) {
 void read_solution(const fs::path& folder, Bytes input) {
   std::vector<std::uint8_t> bytes = {'A', 'T', 'R', 'I', 'U', 'M', 'S', 'F', 4, 0, 0, 0};
   bytes.insert(bytes.end(), input.begin(), input.end());
-  scene::Hash64 hash;
-  hash.bytes(bytes.data(), bytes.size());
-  const std::uint64_t sum = hash.result();
-  bytes.resize(bytes.size() + sizeof sum);
-  std::memcpy(bytes.data() + bytes.size() - sizeof sum, &sum, sizeof sum);
-  const scene::Solution solution = scene::read_solution(put(folder, "input.atrium", bytes));
+  const scene::Solution solution =
+      scene::read_solution(put(folder, "input.atrium", with_checksum(std::move(bytes))));
   look_up(solution.field);
   std::vector<double> factors;
   for (const scene::GroupField& group : solution.groups) factors.push_back(group.factor);
@@ -149,16 +141,37 @@ void read_texture(const fs::path&, Bytes input) {
   static_cast<void>(scene::decode_texture({input.begin(), input.end()}, "image"));
 }
 
+void read_walk(const fs::path& folder, Bytes input) {
+  const scene::CameraPath path = scene::read_camera_path(put(folder, "input.yaml", input));
+  for (const double progress : {0.0, 0.3, 0.999, 1.0}) static_cast<void>(path.camera(progress));
+}
+
 constexpr std::array kReaders = {
-    Reader{"gltf", &read_gltf},         Reader{"glb", &read_glb},
-    Reader{"obj", &read_obj},           Reader{"ply", &read_ply},
-    Reader{"stl", &read_stl},           Reader{"yaml", &read_yaml},
-    Reader{"ies", &read_ies},           Reader{"eulumdat", &read_eulumdat},
-    Reader{"epw", &read_epw},           Reader{"material", &read_material},
-    Reader{"solution", &read_solution}, Reader{"pfm", &read_pfm},
+    Reader{"gltf", &read_gltf},
+    Reader{"glb", &read_glb},
+    Reader{"obj", &read_obj},
+    Reader{"ply", &read_ply},
+    Reader{"stl", &read_stl},
+    Reader{"yaml", &read_yaml},
+    Reader{"ies", &read_ies},
+    Reader{"eulumdat", &read_eulumdat},
+    Reader{"epw", &read_epw},
+    Reader{"solution", &read_solution},
+    Reader{"pfm", &read_pfm},
     Reader{"texture", &read_texture},
+    Reader{"walk", &read_walk},
+#ifdef ATRIUM_WITH_APPS
+    Reader{"config", &read_config},
+    Reader{"material", &read_material},
+#endif
+#ifdef ATRIUM_WITH_RADIOSITY
+    Reader{"sensors", &read_sensors},
+    Reader{"state", &read_state},
+    Reader{"checkpoint", &read_checkpoint},
+#endif
 #ifdef ATRIUM_WITH_VTK
-    Reader{"vtp", &read_vtp},           Reader{"vtu", &read_vtu},
+    Reader{"vtp", &read_vtp},
+    Reader{"vtu", &read_vtu},
 #endif
 };
 
@@ -172,6 +185,15 @@ fs::path put(const fs::path& folder, const std::string& name, Bytes bytes) {
   out.close();
   if (!out) throw std::logic_error(file.string() + ": cannot be written");
   return file;
+}
+
+std::vector<std::uint8_t> with_checksum(std::vector<std::uint8_t> bytes) {
+  scene::Hash64 hash;
+  hash.bytes(bytes.data(), bytes.size());
+  const std::uint64_t sum = hash.result();
+  bytes.resize(bytes.size() + sizeof sum);
+  std::memcpy(bytes.data() + bytes.size() - sizeof sum, &sum, sizeof sum);
+  return bytes;
 }
 
 std::span<const Reader> readers() { return kReaders; }

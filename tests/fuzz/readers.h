@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace atrium::fuzz {
 
@@ -30,7 +31,18 @@ struct Reader {
 // Of the readers below: puts a file there.
 std::filesystem::path put(const std::filesystem::path& folder, const std::string& name,
                           Bytes bytes);
+/// What stands at the end of files that Atrium keeps for itself.
+[[nodiscard]] std::vector<std::uint8_t> with_checksum(std::vector<std::uint8_t> bytes);
 
+#ifdef ATRIUM_WITH_APPS
+void read_config(const std::filesystem::path& folder, Bytes input);
+void read_material(const std::filesystem::path& folder, Bytes input);
+#endif
+#ifdef ATRIUM_WITH_RADIOSITY
+void read_sensors(const std::filesystem::path& folder, Bytes input);
+void read_state(const std::filesystem::path& folder, Bytes input);
+void read_checkpoint(const std::filesystem::path& folder, Bytes input);
+#endif
 #ifdef ATRIUM_WITH_VTK
 void read_vtp(const std::filesystem::path& folder, Bytes input);
 void read_vtu(const std::filesystem::path& folder, Bytes input);

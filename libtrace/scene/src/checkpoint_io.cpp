@@ -2,9 +2,11 @@
 
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <limits>
+#include <span>
 
 #include "hash64.h"
+#include "import_util.h"
 #include "material/error.h"
 #include "scene/archive.h"
 #include "scene/output_file.h"
@@ -58,10 +60,9 @@ void write_checkpoint(const Checkpoint& c, const fs::path& file) {
 
 Checkpoint read_checkpoint(const fs::path& file) {
   const std::string name = file.string();
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(name + ": cannot be read");
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(in),
-                                std::istreambuf_iterator<char>()};
+  const std::vector<std::uint8_t> whole =
+      read_file_bytes(file, std::numeric_limits<std::uintmax_t>::max());
+  const std::span bytes(reinterpret_cast<const char*>(whole.data()), whole.size());
   constexpr std::size_t kHead = sizeof kMagic + sizeof kVersion;
   if (bytes.size() < kHead || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
     throw Error(name + ": is no checkpoint of a picture");

@@ -221,21 +221,29 @@ auto FiniteLights<N>::place_on(const EmissiveTriangle& t, const Vec3f& p, const 
   if (in_plane(c, p)) return std::nullopt;
   const SphericalTriangle seen(c, p);
   Vec2f bary = uniform_triangle(u);
+  Vec3d w = Vec3d::Zero();
+  double distance = 0.0;
   if (seen.usable()) {
     // Where the ray meets the plane, in barycentrics (Moeller & Trumbore 1997).
-    const Vec3d w = seen.sample(u), e1 = (c[1] - c[0]).cast<double>(),
-                e2 = (c[2] - c[0]).cast<double>();
+    w = seen.sample(u);
+    const Vec3d e1 = (c[1] - c[0]).cast<double>(), e2 = (c[2] - c[0]).cast<double>();
     const Vec3d s = (p - c[0]).cast<double>(), h = w.cross(e2), q = s.cross(e1);
     const double det = e1.dot(h);
     if (det == 0.0) return std::nullopt;
     const double b1 = std::clamp(s.dot(h) / det, 0.0, 1.0);
     bary = Vec2d(b1, std::clamp(w.dot(q) / det, 0.0, 1.0 - b1)).cast<float>();
+    distance = e2.dot(q) / det;
   }
   Place place{surface_point(*scene_, t.object, t.triangle, bary.x(), bary.y()), {}, 0.0f, 0.0f};
-  const Vec3f d = place.point.position - p;
-  place.distance = d.norm();
+  // The point is rounded to where the corners are known: of a long lamp close by by more than the
+  // direction may be.
+  if (!seen.usable()) {
+    w = Vec3f(place.point.position - p).template cast<double>();
+    distance = w.norm();
+  }
+  place.distance = static_cast<float>(distance);
   if (!(place.distance > 0.0f) || !(t.area > 0.0f)) return std::nullopt;
-  place.wi = d / place.distance;
+  place.wi = (seen.usable() ? w : Vec3d(w / distance)).cast<float>();
   const float cosine = emission_cosine(t, place.point.ng, place.wi);
   if (!(cosine > 1e-6f)) return std::nullopt;
   place.pdf = seen.usable() ? static_cast<float>(1.0 / seen.solid_angle())

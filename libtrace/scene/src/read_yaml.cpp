@@ -1,4 +1,5 @@
 #include <iterator>
+#include <set>
 
 #include "material/error.h"
 #include "scene/scene_io.h"
@@ -35,6 +36,26 @@ void read_cameras(Model& model, const YamlView& list) {
   model.cameras.insert(model.cameras.end(), cameras.begin(), cameras.end());
 }
 
+/// Those of the names that stand somewhere in the file as a value.
+std::set<std::string> mentioned(const YamlNode& tree, const std::set<std::string>& names) {
+  std::set<std::string> found;
+  std::vector<const YamlNode*> open{&tree};
+  while (!open.empty()) {
+    const YamlNode& node = *open.back();
+    open.pop_back();
+    if (names.contains(node.text)) found.insert(node.text);
+    for (const YamlNode& item : node.items) open.push_back(&item);
+    for (const YamlNode::Entry& entry : node.entries) open.push_back(&entry.value);
+  }
+  return found;
+}
+
+void read_needed_materials(YamlScene& scene, const YamlNode& tree, const YamlView& view) {
+  std::set<std::string> names;
+  for (const auto& [name, value] : view.named()) names.insert(name);
+  read_materials(scene, view, mentioned(tree, names));
+}
+
 }  // namespace
 
 void read_yaml(Model& model, const std::filesystem::path& file, const ReadOptions& options) {
@@ -60,7 +81,7 @@ void read_yaml(Model& model, const std::filesystem::path& file, const ReadOption
 
   // The order is that of use: each part may refer to the ones before it, wherever it stands.
   if (const auto view = top.find("spectra")) read_spectra(scene, *view);
-  if (const auto view = top.find("materials")) read_materials(scene, *view);
+  if (const auto view = top.find("materials")) read_needed_materials(scene, tree, *view);
   if (const auto view = top.find("groups")) {
     for (const auto& [name, list] : view->named()) scene.groups[name] = read_objects(scene, list);
   }

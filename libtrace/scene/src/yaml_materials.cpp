@@ -1,6 +1,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "import_util.h"
 #include "material/error.h"
@@ -346,6 +347,7 @@ double area_of(const MeshData& mesh, const Eigen::Affine3d& to_world) {
 
 material::TextureId read_texture_file(YamlScene& scene, const YamlView& view, bool srgb) {
   const std::filesystem::path file = view.file();
+  if (!scene.images) return {};
   const std::string key = (srgb ? "c:" : "d:") + file.string();
   if (const auto known = scene.textures.find(key); known != scene.textures.end()) {
     return known->second;
@@ -370,8 +372,12 @@ MaterialId find_material(const YamlScene& scene, const YamlView& name) {
   name.fail("no material '" + text + "'; there are: " + (names.empty() ? "none" : names));
 }
 
-void read_materials(YamlScene& scene, const YamlView& view) {
-  for (const auto& [name, value] : view.named()) read_material(scene, name, value);
+void read_materials(YamlScene& scene, const YamlView& view, const std::set<std::string>& used) {
+  for (const auto& [name, value] : view.named()) {
+    scene.images = used.contains(name);
+    read_material(scene, name, value);
+  }
+  scene.images = true;
 }
 
 void resolve_powers(YamlScene& scene, std::size_t first_node) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct YamlScene {
   std::map<std::string, material::TextureId> textures;  ///< by path and encoding
   std::vector<PowerEmission> powers;
   ModelBudget budget;
+  bool images = true;  ///< are those of the material that is being read needed?
   std::size_t corners_left = limits::kShapeCorners;  ///< that shapes may still make
   std::size_t placed_left = limits::kPlaced;         ///< objects, those within groups counted
 };
@@ -68,7 +70,8 @@ void read_refraction(const YamlScene& scene, const YamlView& view, material::Mat
 
 // ---- yaml_materials.cpp ----
 
-void read_materials(YamlScene& scene, const YamlView& view);
+/// \param used  names of materials that something may use: images are only read for these.
+void read_materials(YamlScene& scene, const YamlView& view, const std::set<std::string>& used);
 [[nodiscard]] material::TextureId read_texture_file(YamlScene& scene, const YamlView& view,
                                                     bool srgb);
 /// The material of that name. \throws Error that lists what there is.

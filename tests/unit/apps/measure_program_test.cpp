@@ -169,6 +169,7 @@ TEST(AtriumMeasure, WrongUseNamesTheOptionOrTheLine) {
   expect_error(run(folder, measure + "--points p.txt --workplane 1"), 2, "one of");
   expect_error(run(folder, measure + "--points p.txt"), 2, "p.txt:2:");
   expect_error(run(folder, measure + "--points q.txt"), 2, "q.txt: has no sensors");
+  expect_error(run(folder, measure + "--points /dev/zero"), 2, "/dev/zero: not a file");
   expect_error(run(folder, measure + "--points r.txt"), 2, "r.txt:1:");
   expect_error(run(folder, measure + "--points s.txt"), 2, "s.txt:1:");
   expect_error(run(folder, measure + "--points none.txt"), 2, "none.txt");

@@ -130,6 +130,7 @@ TEST(AtriumProgram, PrintedConfigurationCanBeReadBack) {
   const Result third = run(folder, "render --config run.toml --samples 9 --print-config");
   EXPECT_NE(third.out.find("samples=9"), std::string::npos) << third.out;
   expect_error(run(folder, "render --config none.toml"), 2, "none.toml");
+  expect_error(run(folder, "render --config /dev/zero"), 2, "/dev/zero: not a file");
 }
 
 TEST(AtriumProgram, CompareMeasuresAndDifference) {

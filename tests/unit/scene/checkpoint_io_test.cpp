@@ -1,10 +1,12 @@
 #include "scene/checkpoint_io.h"
 
+#include <array>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "material/error.h"
+#include "scene/archive.h"
 #include "support/temp_folder.h"
 
 namespace {
@@ -74,6 +76,23 @@ TEST(CheckpointIo, NamesWhatDiffers) {
   now = sample();
   now.made_with.pop_back();
   EXPECT_NE(message_of([&] { check_checkpoint(kept, now, "f"); }), "");
+}
+
+// Read into a bool it would be undefined to look at.
+TEST(Archive, AByteThatIsNeitherTrueNorFalseIsDamage) {
+  const std::array<char, 3> bytes = {0, 1, 7};
+  atrium::scene::ArchiveReader reader(bytes.data(), bytes.data() + bytes.size(), "a");
+  bool value = true;
+  reader(value);
+  EXPECT_FALSE(value);
+  reader(value);
+  EXPECT_TRUE(value);
+  EXPECT_THROW(reader(value), Error);
+}
+
+TEST(CheckpointIo, ADeviceIsNoCheckpoint) {
+  EXPECT_NE(message_of([] { static_cast<void>(read_checkpoint("/dev/zero")); }).find("not a file"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -225,5 +225,65 @@ TEST(MeshFile, StlCornersBecomeSharedVertices) {
   EXPECT_EQ(std::get<double>(model.materials.at(0).body_reflectance.value()), 0.5);
 }
 
+// Each solid is an object; text is read in double precision: at 1e7 m a float has steps of a metre.
+TEST(MeshFile, StlTextFarAwayKeepsItsShape) {
+  const TempDir folder;
+  const std::string facet =
+      "  facet normal 0 0 1\r\n outer loop vertex 1e7 -0.25 +1 vertex 10000000.5 -.25 1 vertex 1e7 "
+      "0.25 1 endloop endfacet\n";
+  const Model model = read_model({folder.write(
+      "a.stl", "solid one  two \r\n" + facet + "endsolid one\nsolid\n" + facet + "endsolid")});
+  ASSERT_EQ(model.nodes.size(), 2u);
+  EXPECT_EQ(model.nodes[0].name, "one  two");
+  EXPECT_EQ(model.nodes[1].name, "a");
+  EXPECT_EQ(model.meshes[0].positions,
+            (std::vector<Vec3d>{{1e7, -0.25, 1}, {1e7 + 0.5, -0.25, 1}, {1e7, 0.25, 1}}));
+  EXPECT_TRUE(model.warnings.empty());
+}
+
+std::string message_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "taken";
+}
+
+TEST(MeshFile, DamagedStlTextIsAnErrorWithItsLine) {
+  const TempDir folder;
+  const auto said = [&](const std::string& text) {
+    return message_of([&] { static_cast<void>(read_model({folder.write("a.stl", text)})); });
+  };
+  const std::string begin = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
+  EXPECT_NE(said(begin + "endloop\n").find("a.stl:6: 'endloop' stands where 'vertex' is due"),
+            std::string::npos);
+  EXPECT_NE(said(begin + "vertex 0 1 x\n").find("a.stl:6: 'x' is no number"), std::string::npos);
+  EXPECT_NE(said(begin + "vertex 0 1 0\n").find("the file ends within a solid"), std::string::npos);
+  EXPECT_NE(said("solid s\nendsolid s\n").find("has no triangles"), std::string::npos);
+}
+
+// A head that says 'solid' does not make text of a binary file; bytes behind the facets do not
+// matter; a head that announces more than there is does.
+TEST(MeshFile, BinaryStl) {
+  const TempDir folder;
+  const auto file = [](std::uint32_t announced, std::size_t facets, std::size_t more) {
+    std::string bytes = "solid by a program";
+    bytes.resize(80, ' ');
+    bytes.append(reinterpret_cast<const char*>(&announced), sizeof announced);
+    const std::array<float, 12> facet = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+    for (std::size_t i = 0; i < facets; ++i) {
+      bytes.append(reinterpret_cast<const char*>(facet.data()), sizeof facet);
+      bytes.append(2, '\0');
+    }
+    return bytes + std::string(more, '\0');
+  };
+  EXPECT_EQ(measure(read_model({folder.write("a.stl", file(2, 2, 0))})).area, 1.0);
+  EXPECT_EQ(measure(read_model({folder.write("b.stl", file(2, 2, 7))})).area, 1.0);
+  const std::string said =
+      message_of([&] { static_cast<void>(read_model({folder.write("c.stl", file(3, 2, 7))})); });
+  EXPECT_NE(said.find("3 facets are more than the file's size holds"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace atrium::scene

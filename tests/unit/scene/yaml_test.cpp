@@ -879,5 +879,21 @@ TEST_F(YamlScenes, MediumIsTheExtinctionOfTheAir) {
   EXPECT_NE(error("medium: {}\n"), "");
 }
 
+// An image that nothing shows is not read; `like` hands it on.
+TEST_F(YamlScenes, ImagesOfMaterialsThatNothingUsesAreNotRead) {
+  write("broken.png", "no image");
+  const std::string materials =
+      "materials:\n  plain: {body: 0.5}\n  painted: {body_texture: broken.png}\n";
+  const std::string more = "  painted_too: {like: painted}\n";
+  const auto floor = [](const std::string& material) {
+    return "objects:\n  - {material: " + material +
+           ", polygon: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}\n";
+  };
+  EXPECT_TRUE(read(materials + floor("plain")).textures.empty());
+  for (const std::string& text : {materials + floor("painted"), materials + more + floor("plain")})
+    EXPECT_NE(error(text).find("broken.png"), std::string::npos);
+  EXPECT_NE(error("materials:\n  painted: {body_texture: none.png}\n" + floor("plain")), "");
+}
+
 }  // namespace
 }  // namespace atrium::scene

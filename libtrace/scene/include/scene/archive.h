@@ -53,6 +53,13 @@ class ArchiveReader {
     v.resize(count(sizeof(T)));
     raw(v.data(), v.size() * sizeof(T));
   }
+  /// Another byte than 0 and 1 is no bool, not even one to look at.
+  void operator()(bool& v) {
+    std::uint8_t byte = 0;
+    (*this)(byte);
+    if (byte > 1) damaged();
+    v = byte == 1;
+  }
   void operator()(std::string& s) {
     s.resize(count(1));
     raw(s.data(), s.size());

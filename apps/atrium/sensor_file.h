@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "radiosity/measure.h"
+
+namespace atrium::app {
+
+/// One sensor per line, "x y z nx ny nz" in metres, separated by blanks, commas or semicolons;
+/// normals of any length; # starts a comment. \throws Error "FILE:line: ..." for anything else.
+[[nodiscard]] std::vector<radiosity::Sensor> read_sensors(const std::string& file);
+
+}  // namespace atrium::app
