@@ -251,7 +251,7 @@ void measure(const scene::RayQuery& query, const material::SpectralBasis& basis,
       {"gather", [&] {
          Counters c;
          Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-         sample_gather<N>(problem, {field}, {}, top_up(problem, tally, active, per_side), tally,
+         sample_gather<N>(problem, {field}, {}, {}, top_up(problem, tally, active, per_side), tally,
                           work, c);
          hits += tally.valid(active.front());
          return static_cast<std::size_t>(c[Counter::RaysRow]);
