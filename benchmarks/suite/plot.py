@@ -8,6 +8,7 @@ class Series:
     x: list
     y: list
     dashed: bool = False
+    like: str = ""  # has the colour of the series of this name
 
 
 @dataclasses.dataclass
@@ -16,11 +17,21 @@ class Panel:
     x_title: str
     y_title: str
     series: list
-    percent: bool = False  # y in percent
 
 
 def number(value, _=None):
     return f"{value:g}"
+
+
+def between(value, _=None):
+    """Labels of 2 and 5 times a power of ten."""
+    return number(value) if f"{value:e}"[0] in "25" else ""
+
+
+def wide(low, high):
+    """At least a power of ten, so that flat curves look flat."""
+    grow = max(1.0, (10.0 / (high / low)) ** 0.5)
+    return low / grow, high * grow
 
 
 def draw(panel, axes, colours):
@@ -28,18 +39,20 @@ def draw(panel, axes, colours):
 
     for series in panel.series:
         points = [(x, y) for x, y in zip(series.x, series.y) if x and y and x > 0 and y > 0]
-        colour = colours.setdefault(series.name, f"C{len(colours) % 10}")
+        colour = colours.setdefault(series.like or series.name, f"C{len(colours) % 10}")
         axes.plot([p[0] for p in points], [p[1] for p in points], "--" if series.dashed else "-", color=colour,
                   marker="o", markersize=3.5, linewidth=1.3, label=series.name)
     axes.set(xscale="log", yscale="log", title=panel.title, xlabel=panel.x_title, ylabel=panel.y_title)
     axes.grid(True, which="major", linewidth=0.6, alpha=0.6)
     axes.grid(True, which="minor", linewidth=0.3, alpha=0.4)
+    axes.set_xlim(wide(*axes.get_xlim()))
+    axes.set_ylim(wide(*axes.get_ylim()))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(ticker.FuncFormatter(number))
         axis.set_minor_formatter(ticker.NullFormatter())
         low, high = axis.get_view_interval()
-        if high / low < 30:  # few powers of ten: label between them
-            axis.set_minor_formatter(ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
+        if high / low < 100:  # few powers of ten: label between them, too
+            axis.set_minor_formatter(ticker.FuncFormatter(between))
 
 
 def write(file, panels, columns=2):

@@ -71,7 +71,7 @@ def panels(scene, lines):
             for method in METHODS:
                 some = [line[method] for line in lines if line["kind"] == kind]
                 series.append(plot.Series(f"{method}, {kind}s", [p[measure_name] for p in some],
-                                          [100 * p["found"] for p in some], kind == "block"))
+                                          [100 * p["found"] for p in some], kind == "block", f"{method}, pixels"))
         yield plot.Panel(scene, title, "error found [%]", series)
 
 
