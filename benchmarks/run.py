@@ -10,6 +10,7 @@ Needs scripts/install_deps.sh bench and a build with -DATRIUM_BUILD_BENCHMARKS=O
 the program. Other programs that are compared with run if they are there (docs/benchmarks.md says how
 to get them).
 """
+
 import argparse
 import dataclasses
 import pathlib
@@ -25,6 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 @dataclasses.dataclass
 class Context:
     """What a section may use."""
+
     root: pathlib.Path
     atrium: pathlib.Path  # the program; others that are built lie beside it
     results: pathlib.Path  # folder of results, references and scenes that are made

@@ -4,6 +4,7 @@ Counts are the same for any number of threads and any load of the machine; a pro
 may round rays elsewhere, so they have a tolerance. Errors that are stated stand beside the counts: less
 work must not be bought with more error.
 """
+
 import dataclasses
 
 COUNT = 0.02  # share by which a count, or a stated error, may lie above its baseline
@@ -63,8 +64,19 @@ def table(changes):
     """Columns that line up; the largest changes first."""
     rows = [("case", "number", "baseline", "found", "change")]
     for c in sorted(changes, key=lambda c: -abs(c.share)):
-        rows.append((c.case, c.name, f"{c.baseline:.6g}", f"{c.found:.6g}",
-                     f"{100 * c.share:+.1f} %" if c.baseline else "new"))
+        rows.append(
+            (
+                c.case,
+                c.name,
+                f"{c.baseline:.6g}",
+                f"{c.found:.6g}",
+                f"{100 * c.share:+.1f} %" if c.baseline else "new",
+            )
+        )
     widths = [max(len(row[i]) for row in rows) for i in range(5)]
-    return "\n".join("  ".join(cell.ljust(width) if i < 2 else cell.rjust(width)
-                               for i, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows)
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if i < 2 else cell.rjust(width) for i, (cell, width) in enumerate(zip(row, widths))
+        ).rstrip()
+        for row in rows
+    )

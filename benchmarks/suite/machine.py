@@ -1,4 +1,5 @@
 """What was measured where: processor, compiler, commit, date, and how much else the machine did."""
+
 import datetime
 import os
 import pathlib
@@ -31,16 +32,22 @@ def first_line(command, folder=None):
 def compiler(atrium):
     """As CMake found it for the build that the program is of."""
     cache = atrium.parent.parent / "CMakeCache.txt"
-    found = re.search(r"^CMAKE_CXX_COMPILER:\w+=(.+)$", cache.read_text(encoding="utf-8"), re.M) if cache.exists() else None
+    text = cache.read_text(encoding="utf-8") if cache.exists() else ""
+    found = re.search(r"^CMAKE_CXX_COMPILER:\w+=(.+)$", text, re.M)
     return first_line([found.group(1), "--version"]) if found else "unknown compiler"
 
 
 def describe(atrium, root):
     commit = first_line(["git", "rev-parse", "--short", "HEAD"], root)
     changed = first_line(["git", "status", "--porcelain", "--", "apps", "lib*", "CMakeLists.txt"], root)
-    return {"cpu": cpu_model(), "cores": os.cpu_count(), "memory_gb": round(memory_gb()), "compiler": compiler(atrium),
-            "commit": commit + (" with changes" if changed else ""),
-            "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d")}
+    return {
+        "cpu": cpu_model(),
+        "cores": os.cpu_count(),
+        "memory_gb": round(memory_gb()),
+        "compiler": compiler(atrium),
+        "commit": commit + (" with changes" if changed else ""),
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"),
+    }
 
 
 def busy_seconds():
@@ -63,7 +70,8 @@ class OtherWork:
         return self
 
     def __exit__(self, *_):
-        wall, busy, own = (now - then for now, then in zip(
-            (time.monotonic(), busy_seconds(), self.own_seconds()), self.start))
+        wall, busy, own = (
+            now - then for now, then in zip((time.monotonic(), busy_seconds(), self.own_seconds()), self.start)
+        )
         self.seconds = wall
         self.share = max(0.0, busy - own) / (wall * os.cpu_count())

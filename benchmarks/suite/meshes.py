@@ -1,4 +1,5 @@
 """Meshes of any number of triangles and the files of four formats that hold them. Vertices are flat arrays."""
+
 import array
 import json
 import math
@@ -14,11 +15,15 @@ class Mesh:
 
     def add_sphere(self, centre, radius, rings, segments):
         first = len(self.positions) // 3
-        circle = [(math.cos(2 * math.pi * s / segments), math.sin(2 * math.pi * s / segments)) for s in range(segments)]
+        circle = [
+            (math.cos(2 * math.pi * s / segments), math.sin(2 * math.pi * s / segments)) for s in range(segments)
+        ]
         for r in range(rings + 1):
             y, across = math.cos(math.pi * r / rings), math.sin(math.pi * r / rings)
             for c, s in circle:
-                self.positions.extend((centre[0] + radius * across * c, centre[1] + radius * y, centre[2] + radius * across * s))
+                self.positions.extend(
+                    (centre[0] + radius * across * c, centre[1] + radius * y, centre[2] + radius * across * s)
+                )
         for r in range(rings):
             for s in range(segments):
                 a, b = first + r * segments + s, first + r * segments + (s + 1) % segments
@@ -42,9 +47,11 @@ def spheres(triangles):
 
 def write_ply(mesh, file):
     with open(file, "wb") as out:
-        out.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.positions) // 3}\nproperty float x\n"
-                  f"property float y\nproperty float z\nelement face {mesh.count()}\n"
-                  "property list uchar int vertex_indices\nend_header\n".encode())
+        out.write(
+            f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.positions) // 3}\nproperty float x\n"
+            f"property float y\nproperty float z\nelement face {mesh.count()}\n"
+            "property list uchar int vertex_indices\nend_header\n".encode()
+        )
         out.write(mesh.positions.tobytes())
         triangle, t = struct.Struct("<BIII"), mesh.triangles
         out.write(b"".join(triangle.pack(3, t[i], t[i + 1], t[i + 2]) for i in range(0, len(t), 3)))
@@ -61,13 +68,22 @@ def write_glb(mesh, file):
     p = mesh.positions
     low, high = [min(p[k::3]) for k in range(3)], [max(p[k::3]) for k in range(3)]
     positions, indices = p.tobytes(), mesh.triangles.tobytes()
-    head = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-            "buffers": [{"byteLength": len(positions) + len(indices)}],
-            "bufferViews": [{"buffer": 0, "byteLength": len(positions)},
-                            {"buffer": 0, "byteOffset": len(positions), "byteLength": len(indices)}],
-            "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(p) // 3, "type": "VEC3", "min": low, "max": high},
-                          {"bufferView": 1, "componentType": 5125, "count": len(mesh.triangles), "type": "SCALAR"}]}
+    head = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "buffers": [{"byteLength": len(positions) + len(indices)}],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": len(positions)},
+            {"buffer": 0, "byteOffset": len(positions), "byteLength": len(indices)},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": len(p) // 3, "type": "VEC3", "min": low, "max": high},
+            {"bufferView": 1, "componentType": 5125, "count": len(mesh.triangles), "type": "SCALAR"},
+        ],
+    }
     text = json.dumps(head).encode()
     text += b" " * (-len(text) % 4)
     binary = positions + indices

@@ -1,4 +1,5 @@
 """One picture by Mitsuba 3, as a process of its own: SCENE.xml OUT.exr SAMPLES SEED VARIANT."""
+
 import pathlib
 import sys
 

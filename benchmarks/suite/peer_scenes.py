@@ -3,6 +3,7 @@
 Metres, y up, radiance in W/(sr m^2) of the channels R, G, B. A quad is (corner, u, v); its front is where
 u x v points, lamps shine to the front only, everything else reflects on both sides.
 """
+
 import dataclasses
 import math
 
@@ -31,9 +32,14 @@ WHITE, RED, GREEN, DARK, BLACK = (0.73,) * 3, (0.6, 0.06, 0.05), (0.12, 0.45, 0.
 def room(low, high, colours):
     """Six walls that look inwards: left, right, bottom, top, back, front."""
     (x, y, z), (w, h, d) = low, tuple(b - a for a, b in zip(low, high))
-    sides = [((x, y, z), (0, h, 0), (0, 0, d)), ((x + w, y, z), (0, 0, d), (0, h, 0)),
-             ((x, y, z), (0, 0, d), (w, 0, 0)), ((x, y + h, z), (w, 0, 0), (0, 0, d)),
-             ((x, y, z), (w, 0, 0), (0, h, 0)), ((x, y, z + d), (0, h, 0), (w, 0, 0))]
+    sides = [
+        ((x, y, z), (0, h, 0), (0, 0, d)),
+        ((x + w, y, z), (0, 0, d), (0, h, 0)),
+        ((x, y, z), (0, 0, d), (w, 0, 0)),
+        ((x, y + h, z), (w, 0, 0), (0, 0, d)),
+        ((x, y, z), (w, 0, 0), (0, h, 0)),
+        ((x, y, z + d), (0, h, 0), (w, 0, 0)),
+    ]
     return [Quad(c, *side) for c, side in zip(colours, sides) if c]
 
 
@@ -110,29 +116,36 @@ def atrium(scene, _size):
     for i, q in enumerate(scene.quads):
         points = ", ".join(f"[{words(p, ', ')}]" for p in corners(q))
         lines.append(f"  - {{name: q{i}, material: m{i}, polygon: [{points}]}}")
-    lines.append(f"cameras: [{{name: view, perspective: {{eye: [{words(scene.eye, ', ')}], "
-                 f"target: [{words(scene.target, ', ')}], yfov: {scene.yfov}}}}}]")
+    lines.append(
+        f"cameras: [{{name: view, perspective: {{eye: [{words(scene.eye, ', ')}], "
+        f"target: [{words(scene.target, ', ')}], yfov: {scene.yfov}}}}}]"
+    )
     return "\n".join(lines) + "\n"
 
 
 def mitsuba(scene, size):
-    lines = ['<scene version="3.0.0">', '<integrator type="path"><integer name="max_depth" value="-1"/></integrator>',
-             '<sensor type="perspective"><string name="fov_axis" value="y"/>'
-             f'<float name="fov" value="{scene.yfov}"/><transform name="to_world">'
-             f'<lookat origin="{words(scene.eye, ", ")}" target="{words(scene.target, ", ")}" up="0, 1, 0"/></transform>'
-             '<sampler type="independent"/><film type="hdrfilm"><rfilter type="box"/>'
-             f'<integer name="width" value="{size[0]}"/><integer name="height" value="{size[1]}"/>'
-             '<string name="pixel_format" value="rgb"/><string name="component_format" value="float32"/></film></sensor>']
+    lines = [
+        '<scene version="3.0.0">',
+        '<integrator type="path"><integer name="max_depth" value="-1"/></integrator>',
+        '<sensor type="perspective"><string name="fov_axis" value="y"/>'
+        f'<float name="fov" value="{scene.yfov}"/><transform name="to_world">'
+        f'<lookat origin="{words(scene.eye, ", ")}" target="{words(scene.target, ", ")}" up="0, 1, 0"/></transform>'
+        '<sampler type="independent"/><film type="hdrfilm"><rfilter type="box"/>'
+        f'<integer name="width" value="{size[0]}"/><integer name="height" value="{size[1]}"/>'
+        '<string name="pixel_format" value="rgb"/><string name="component_format" value="float32"/></film></sensor>',
+    ]
     for q in scene.quads:
         # The unit rectangle spans -1 to 1 in x and y and looks along z.
         n = unit(cross(q.u, q.v))
         middle = add(q.corner, scaled(add(q.u, q.v), 0.5))
         columns = [scaled(q.u, 0.5), scaled(q.v, 0.5), n, middle]
         matrix = [columns[c][r] for r in range(3) for c in range(4)] + [0, 0, 0, 1]
-        emitter = (f'<emitter type="area"><rgb name="radiance" value="{q.radiance}"/></emitter>' if q.radiance else "")
-        lines.append(f'<shape type="rectangle"><transform name="to_world"><matrix value="{words(matrix)}"/></transform>'
-                     f'<bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="{words(q.colour)}"/>'
-                     f'</bsdf></bsdf>{emitter}</shape>')
+        emitter = f'<emitter type="area"><rgb name="radiance" value="{q.radiance}"/></emitter>' if q.radiance else ""
+        lines.append(
+            f'<shape type="rectangle"><transform name="to_world"><matrix value="{words(matrix)}"/></transform>'
+            f'<bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="{words(q.colour)}"/>'
+            f"</bsdf></bsdf>{emitter}</shape>"
+        )
     return "\n".join(lines + ["</scene>"]) + "\n"
 
 
@@ -146,21 +159,29 @@ def pov(scene, size):
     def vector(a):
         return f"<{words(a, ', ')}>"
 
-    lines = ["#version 3.7;", "global_settings { assumed_gamma 1.0 max_trace_level 20 radiosity { count COUNT, 10007 "
-             "error_bound ERROR_BOUND recursion_limit RECURSION nearest_count 8 low_error_factor 0.5 gray_threshold 0 "
-             "pretrace_start 0.08 pretrace_end 0.01 adc_bailout 0.001 brightness 1 } }",
-             f"camera {{ location {vector(scene.eye)} direction {vector(scaled(forward, distance))} "
-             f"up {vector(up)} right {vector(scaled(right, size[0] / size[1]))} }}"]
+    lines = [
+        "#version 3.7;",
+        "global_settings { assumed_gamma 1.0 max_trace_level 20 radiosity { count COUNT, 10007 "
+        "error_bound ERROR_BOUND recursion_limit RECURSION nearest_count 8 low_error_factor 0.5 gray_threshold 0 "
+        "pretrace_start 0.08 pretrace_end 0.01 adc_bailout 0.001 brightness 1 } }",
+        f"camera {{ location {vector(scene.eye)} direction {vector(scaled(forward, distance))} "
+        f"up {vector(up)} right {vector(scaled(right, size[0] / size[1]))} }}",
+    ]
     for q in scene.quads:
         a, b, c, d = (vector(p) for p in corners(q))
-        look = (f"pigment {{ rgb 1 }} finish {{ ambient 0 diffuse 0 emission {q.radiance} }}" if q.radiance else
-                f"pigment {{ rgb <{words(q.colour, ', ')}> }} finish {{ ambient 0 diffuse 1 emission 0 }}")
+        look = (
+            f"pigment {{ rgb 1 }} finish {{ ambient 0 diffuse 0 emission {q.radiance} }}"
+            if q.radiance
+            else f"pigment {{ rgb <{words(q.colour, ', ')}> }} finish {{ ambient 0 diffuse 1 emission 0 }}"
+        )
         lines.append(f"mesh {{ triangle {{ {a}, {b}, {c} }} triangle {{ {a}, {c}, {d} }} texture {{ {look} }} }}")
         if q.radiance:  # its back shines as well: something black behind it
             behind = scaled(unit(cross(q.u, q.v)), -5e-4)
             a, b, c, d = (vector(add(p, behind)) for p in corners(q))
-            lines.append(f"mesh {{ triangle {{ {a}, {b}, {c} }} triangle {{ {a}, {c}, {d} }} "
-                         "texture { pigment { rgb 0 } finish { ambient 0 diffuse 0 } } }")
+            lines.append(
+                f"mesh {{ triangle {{ {a}, {b}, {c} }} triangle {{ {a}, {c}, {d} }} "
+                "texture { pigment { rgb 0 } finish { ambient 0 diffuse 0 } } }"
+            )
     return "\n".join(lines) + "\n"
 
 
@@ -181,5 +202,26 @@ def radiance_view(scene, size):
     direction = unit(add(scene.target, scaled(scene.eye, -1)))
     half = math.tan(math.radians(scene.yfov / 2))
     across = 2 * math.degrees(math.atan(half * size[0] / size[1]))
-    return ["-vtv", "-vp", *scene.eye, "-vd", *direction, "-vu", 0, 1, 0, "-vh", across, "-vv", scene.yfov,
-            "-x", size[0], "-y", size[1], "-pa", 0, "-pj", 0.9]
+    return [
+        "-vtv",
+        "-vp",
+        *scene.eye,
+        "-vd",
+        *direction,
+        "-vu",
+        0,
+        1,
+        0,
+        "-vh",
+        across,
+        "-vv",
+        scene.yfov,
+        "-x",
+        size[0],
+        "-y",
+        size[1],
+        "-pa",
+        0,
+        "-pj",
+        0.9,
+    ]

@@ -1,4 +1,5 @@
 """Log-log plots as SVG that is the same for the same numbers."""
+
 import dataclasses
 
 
@@ -40,8 +41,16 @@ def draw(panel, axes, colours):
     for series in panel.series:
         points = [(x, y) for x, y in zip(series.x, series.y) if x and y and x > 0 and y > 0]
         colour = colours.setdefault(series.like or series.name, f"C{len(colours) % 10}")
-        axes.plot([p[0] for p in points], [p[1] for p in points], "--" if series.dashed else "-", color=colour,
-                  marker="o", markersize=3.5, linewidth=1.3, label=series.name)
+        axes.plot(
+            [p[0] for p in points],
+            [p[1] for p in points],
+            "--" if series.dashed else "-",
+            color=colour,
+            marker="o",
+            markersize=3.5,
+            linewidth=1.3,
+            label=series.name,
+        )
     axes.set(xscale="log", yscale="log", title=panel.title, xlabel=panel.x_title, ylabel=panel.y_title)
     axes.grid(True, which="major", linewidth=0.6, alpha=0.6)
     axes.grid(True, which="minor", linewidth=0.3, alpha=0.4)
@@ -60,8 +69,15 @@ def write(file, panels, columns=2):
     import matplotlib
 
     matplotlib.use("svg")
-    matplotlib.rcParams.update({"svg.hashsalt": "atrium", "svg.fonttype": "path", "font.size": 8.5,
-                                "axes.titlesize": 9.5, "legend.fontsize": 7.5})
+    matplotlib.rcParams.update(
+        {
+            "svg.hashsalt": "atrium",
+            "svg.fonttype": "path",
+            "font.size": 8.5,
+            "axes.titlesize": 9.5,
+            "legend.fontsize": 7.5,
+        }
+    )
     from matplotlib import pyplot
 
     rows = -(-len(panels) // columns)
@@ -71,7 +87,7 @@ def write(file, panels, columns=2):
         draw(panel, axes, colours)
         if len(panel.series) > 1:
             axes.legend(framealpha=0.8)
-    for axes in list(grid.flat)[len(panels):]:
+    for axes in list(grid.flat)[len(panels) :]:
         axes.set_visible(False)
     figure.tight_layout()
     file.parent.mkdir(parents=True, exist_ok=True)

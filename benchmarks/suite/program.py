@@ -1,4 +1,5 @@
 """Runs a program as a whole process and says what it took."""
+
 import dataclasses
 import json
 import os
@@ -32,8 +33,14 @@ def run(command, folder=None, environment=None):
     command = [str(word) for word in command]
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         start = time.perf_counter()
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, cwd=folder,
-                                   env=None if environment is None else os.environ | environment)
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=err,
+            cwd=folder,
+            env=None if environment is None else os.environ | environment,
+        )
         _, status, used = os.wait4(process.pid, 0)
         wall = time.perf_counter() - start
         process.returncode = os.waitstatus_to_exitcode(status)

@@ -1,4 +1,5 @@
 """Counted work of a dozen small runs against a baseline: `run.py --quick`. No number is a time."""
+
 import json
 import pathlib
 import tempfile

@@ -1,4 +1,5 @@
 """What sections found, kept as one JSON file each, so that they may be run at different times."""
+
 import json
 
 from suite import machine
@@ -12,8 +13,13 @@ def measure(section, context):
     """Runs a section and keeps what it found, with where and beside how much other work."""
     with machine.OtherWork() as other:
         data = section.measure(context)
-    found = {"machine": machine.describe(context.atrium, context.root), "seconds": round(other.seconds),
-             "other_work": round(other.share, 3), "thorough": context.thorough, "data": data}
+    found = {
+        "machine": machine.describe(context.atrium, context.root),
+        "seconds": round(other.seconds),
+        "other_work": round(other.share, 3),
+        "thorough": context.thorough,
+        "data": data,
+    }
     context.results.mkdir(parents=True, exist_ok=True)
     file_of(context.results, section.NAME).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     return found

@@ -1,4 +1,5 @@
 """Comparison of counted work with a baseline: what fails, what passes, what is only said."""
+
 import pathlib
 import sys
 import unittest
@@ -56,8 +57,9 @@ class Compare(unittest.TestCase):
 
     def test_the_table_names_case_number_and_change(self):
         regressions, _, _ = counted.compare(case(samples=1000), case(samples=1500))
-        self.assertEqual(counted.table(regressions).splitlines()[1].split(),
-                         ["box", "samples", "1000", "1500", "+50.0", "%"])
+        self.assertEqual(
+            counted.table(regressions).splitlines()[1].split(), ["box", "samples", "1000", "1500", "+50.0", "%"]
+        )
 
 
 if __name__ == "__main__":

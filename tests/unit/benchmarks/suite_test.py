@@ -1,4 +1,5 @@
 """What the benchmarks measure on: generated scenes are what they say, tables are read as they are written."""
+
 import pathlib
 import sys
 import unittest
@@ -43,7 +44,7 @@ class Meshes(unittest.TestCase):
         mesh.add_sphere((1, 2, 3), 0.5, 5, 10)
         edges, t, p = {}, mesh.triangles, mesh.positions
         for i in range(0, len(t), 3):
-            corner = [tuple(p[3 * t[i + k]:3 * t[i + k] + 3]) for k in range(3)]
+            corner = [tuple(p[3 * t[i + k] : 3 * t[i + k] + 3]) for k in range(3)]
             u, v = (tuple(a - b for a, b in zip(corner[k], corner[0])) for k in (1, 2))
             middle = tuple(sum(c[k] for c in corner) / 3 - (1, 2, 3)[k] for k in range(3))
             self.assertGreater(dot(peer_scenes.cross(u, v), middle), 0)
