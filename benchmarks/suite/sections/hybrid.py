@@ -153,8 +153,8 @@ def page(data, images):
     references = ", ".join(f"{scene.split('/')[-1]} {samples}" for scene, (samples, _) in SCENES.items())
     costs = ["CPU s", "wall s", "MB", "found"]
     head = ["scene", "asked", *(f"hybrid: {c}" for c in costs), *(f"path: {c}" for c in costs), "CPU path / hybrid"]
-    return f"""Both methods are asked for an error (`--error` of pixels, `--error-block` of 8x8 blocks), so the path tracer
-samples adaptively, too; {SIZE} pixels, seed 1, start and solve included. *found*: against a path traced reference
+    return f"""Both methods are asked for an error (`--error` of pixels, `--error-block` of 8x8 blocks), so the path
+tracer samples adaptively, too; {SIZE} pixels, seed 1, start and solve included. *found*: against a path traced reference
 ({references} samples of a pixel, seed {REFERENCE_SEED}), its noise subtracted, with the 95 % interval, which is wide
 where the reference is noisy. `-`: the limit of {LIMIT} s of wall time came first. Under 2 s: median of three runs.
 

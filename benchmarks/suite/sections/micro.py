@@ -98,11 +98,15 @@ def ray_tables(paths):
     )
 
 
+def nanoseconds(run):
+    return f"{run['ns']:.3g}" if run["ns"] < 1000 else f"{run['ns']:,.0f}"
+
+
 def look_up_table(paths):
     fields = sorted(name for name in paths if name.startswith("field/"))
-    rows = [[name.removeprefix("field/"), f"{paths[name]['ns']:.3g}"] for name in fields]
+    rows = [[name.removeprefix("field/"), nanoseconds(paths[name])] for name in fields]
     rows += [
-        [f"{what} of one of {count} lamps", f"{paths[f'lights/{key}/{count}']['ns']:.3g}"]
+        [f"{what} of one of {count} lamps", nanoseconds(paths[f"lights/{key}/{count}"])]
         for key, what in (("sample", "choice and point"), ("density", "density of a hit"))
         for count in (1, 100, 10000)
     ]
@@ -113,7 +117,7 @@ def material_table(materials):
     models = {}
     for name, run in sorted(materials.items()):
         _, model, what, _ = name.split("/")
-        models.setdefault(model, {})[what] = f"{run['ns']:.3g}"
+        models.setdefault(model, {})[what] = nanoseconds(run)
     return table(
         ["material, 3 lanes", "evaluate [ns]", "sample [ns]", "density [ns]"],
         [[m, t.get("eval", ""), t.get("sample", ""), t.get("pdf", "")] for m, t in models.items()],

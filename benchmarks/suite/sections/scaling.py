@@ -173,8 +173,8 @@ its pixels. Scenes are generated (`benchmarks/suite/rooms.py`, `meshes.py`) or l
 
 
 NOTES = {
-    "Triangles": "A room with 64 spheres in one PLY file, draft, 64x48 pixels. Elements are at most 15,000, so solving "
-    "and picture cost about the same and loading grows with the file.",
+    "Triangles": "A room with 64 spheres in one PLY file, draft, 64x48 pixels. A draft asks for about 15,000 elements; "
+    "finely tessellated curved surfaces get more, and these are what the largest rows cost.",
     "Elements": "corridor_door solved under a limit of memory, which is what decides about the elements.",
     "Lights": "A hall with lamps of 2 cm, always of the same flux together, draft, 64x48 pixels.",
     "Reflectance": "A closed room in which everything but the lamp reflects the same, draft, 64x48 pixels: light of "
