@@ -5,6 +5,8 @@ import math
 HEAD = "atrium: 1\nunit: nit\nmaterials:\n"
 LAMP = "  - {{name: lamp, material: lamp, polygon: [[3, {y}, 3], [5, {y}, 3], [5, {y}, 5], [3, {y}, 5]]}}\n"
 CAMERA = "cameras: [{name: view, perspective: {eye: [0.3, 1.8, 7.6], target: [4, 0.6, 3], yfov: 60}}]\n"
+# Looks down: no lamp of the ceiling is in it, smaller than a pixel and far brighter than all else.
+CAMERA_DOWN = "cameras: [{name: view, perspective: {eye: [0.3, 1.8, 7.6], target: [4, 0, 3], yfov: 32}}]\n"
 
 
 def furnished(content):
@@ -31,7 +33,7 @@ def lamps(count):
         "  - {name: block, material: thing, box: {min: [0.5, 0, 0.5], max: [1.1, 0.9, 1.1]}, "
         "repeat: {count: [4, 1, 4], step: [2, 1, 2]}}\n"
         "  - {name: lamp, material: lamp, polygon: [[-0.01, 0, -0.01], [0.01, 0, -0.01], [0.01, 0, 0.01], "
-        f"[-0.01, 0, 0.01]], at: [{places}]}}\n" + CAMERA
+        f"[-0.01, 0, 0.01]], at: [{places}]}}\n" + CAMERA_DOWN
     )
 
 

@@ -179,7 +179,7 @@ def page(data, images):
 against path tracing that knows nothing of elements. *rows*: a fixed effort; *rows by error*: `--error` 10, 5, 2
 %; *shooting*: until 20, 5, 1 % of the flux is left (small_room only, 1,500 elements); *path tracing*: of every
 element side. Seconds of the cheapest run that has the error; `-`: none has. Rays, intervals, statistical errors
-and what the solver states of itself: [radiosity-cost.md](radiosity-cost.md), written by the same run. What the
+and what the solver states of itself: [radiosity-cost.md](radiosity-cost.md), which the same command writes. What the
 mesh resolves limits the error of rows there, whatever the rays.
 
 {table(["scene", "method", *heads, "least error", "MB"], lines, 2)}

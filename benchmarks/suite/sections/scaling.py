@@ -176,9 +176,9 @@ NOTES = {
     "Triangles": "A room with 64 spheres in one PLY file, draft, 64x48 pixels. A draft asks for about 15,000 elements; "
     "finely tessellated curved surfaces get more, and these are what the largest rows cost.",
     "Elements": "corridor_door solved under a limit of memory, which is what decides about the elements.",
-    "Lights": "A hall with lamps of 2 cm, always of the same flux together, draft, 64x48 pixels.",
-    "Reflectance": "A closed room in which everything but the lamp reflects the same, draft, 64x48 pixels: light of "
-    "reflectance 0.99 goes round a hundred times, the solver needs few more iterations.",
-    "Image size": "cornell, draft: the solve hardly depends on it.",
+    "Lights": "A hall with lamps of 2 cm, always of the same flux together and none of them in the picture, draft, 64x48.",
+    "Reflectance": "A closed room in which everything but the lamp reflects the same, draft, 64x48 pixels: rays hardly "
+    "grow with the bounces, iterations of the solver do a little.",
+    "Image size": "cornell, draft: the solve is the same for all.",
     "Threads": "furnished_room, normal, 128x96 pixels.",
 }
