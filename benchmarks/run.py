@@ -13,6 +13,7 @@ to get them).
 
 import argparse
 import dataclasses
+import importlib.util
 import pathlib
 import sys
 import time
@@ -60,6 +61,8 @@ def parse():
     parser.add_argument("--baseline", type=path, default=ROOT / "benchmarks/quick_baseline.json", help="of --quick")
     options = parser.parse_args()
     unknown = [name for name in options.only.split(",") if name not in SECTIONS]
+    if options.renew and not options.quick:
+        parser.error("--renew belongs to --quick")
     if unknown:
         parser.error(f"no section '{unknown[0]}' (known: {known})")
     return options
@@ -72,6 +75,8 @@ def main():
         sys.exit(f"run.py: {atrium} is not there: cmake --preset release && cmake --build --preset release")
     if options.quick:
         return quick.main(atrium, ROOT, options.baseline, options.renew)
+    if importlib.util.find_spec("matplotlib") is None:
+        sys.exit("run.py: no Python module matplotlib: scripts/install_deps.sh bench")
     context = Context(ROOT, atrium, options.results.resolve(), options.docs.resolve(), options.thorough)
     if not options.compose:
         for name in options.only.split(","):

@@ -4,6 +4,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import shutil
 import statistics
 import subprocess
 import tempfile
@@ -31,6 +32,8 @@ def run(command, folder=None, environment=None):
     this one imports nothing large.
     """
     command = [str(word) for word in command]
+    if shutil.which(command[0]) is None:
+        raise Failed(f"no program {command[0]}")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         start = time.perf_counter()
         process = subprocess.Popen(
