@@ -68,6 +68,21 @@ def parse():
     return options
 
 
+def run_sections(names, context):
+    """False if one of them failed; the others are measured all the same."""
+    complete = True
+    for name in names:
+        start = time.monotonic()
+        print(f"== {name}", flush=True)
+        try:
+            results.measure(SECTIONS[name], context)
+        except program.Failed as failure:
+            print(f"run.py: {name}: {failure}", file=sys.stderr, flush=True)
+            complete = False
+        print(f"== {name}: {time.monotonic() - start:.0f} s", flush=True)
+    return complete
+
+
 def main():
     options = parse()
     atrium = options.atrium.resolve()
@@ -78,14 +93,9 @@ def main():
     if importlib.util.find_spec("matplotlib") is None:
         sys.exit("run.py: no Python module matplotlib: scripts/install_deps.sh bench")
     context = Context(ROOT, atrium, options.results.resolve(), options.docs.resolve(), options.thorough)
-    if not options.compose:
-        for name in options.only.split(","):
-            start = time.monotonic()
-            print(f"== {name}", flush=True)
-            results.measure(SECTIONS[name], context)
-            print(f"== {name}: {time.monotonic() - start:.0f} s", flush=True)
+    complete = options.compose or run_sections(options.only.split(","), context)
     document.compose(SECTIONS.values(), context)
-    return 0
+    return 0 if complete else 1
 
 
 if __name__ == "__main__":

@@ -23,7 +23,8 @@ scene::Scene hall(int count) {
   const int across = static_cast<int>(std::ceil(std::sqrt(count)));
   for (int i = 0; i < count; ++i) {
     const double step = kSide / across;
-    maker.quad(lamp, {(i % across + 0.4) * step, kHeight - 0.1, (i / across + 0.4) * step}, {0.1, 0, 0}, {0, 0, 0.1});
+    maker.quad(lamp, {(i % across + 0.4) * step, kHeight - 0.1, (i / across + 0.4) * step},
+               {0.1, 0, 0}, {0, 0, 0.1});
   }
   return scene::build_scene(maker.model());
 }
@@ -78,7 +79,8 @@ void run_pdf(benchmark::State& state, int count) {
   for (const Place& p : places(scene)) {
     const auto sample = lights.sample(p.position, up, p.choice, p.u);
     if (!sample) continue;
-    if (const auto hit = query.closest({p.position, sample->wi}, counters, scene::Counter::RaysShadow))
+    if (const auto hit =
+            query.closest({p.position, sample->wi}, counters, scene::Counter::RaysShadow))
       found.push_back({p.position, scene::surface_point(scene, *hit), hit->t});
   }
   std::size_t i = 0;
@@ -95,8 +97,10 @@ void run_pdf(benchmark::State& state, int count) {
 
 void register_lights() {
   for (const int count : {1, 100, 10000}) {
-    benchmark::RegisterBenchmark(("lights/sample/" + std::to_string(count)).c_str(), run_sample, count);
-    benchmark::RegisterBenchmark(("lights/density/" + std::to_string(count)).c_str(), run_pdf, count);
+    benchmark::RegisterBenchmark(("lights/sample/" + std::to_string(count)).c_str(), run_sample,
+                                 count);
+    benchmark::RegisterBenchmark(("lights/density/" + std::to_string(count)).c_str(), run_pdf,
+                                 count);
   }
 }
 

@@ -23,8 +23,9 @@ struct Solved {
   scene::Scene scene = make_building();
   scene::RayQuery query{scene};
   scene::SurfaceField field =
-      radiosity::solve(query, material::SpectralBasis::rgb(),
-                       {.max_elements = 60000, .row_rays = 16, .gather_rays = 0, .direct_samples = 2})
+      radiosity::solve(
+          query, material::SpectralBasis::rgb(),
+          {.max_elements = 60000, .row_rays = 16, .gather_rays = 0, .direct_samples = 2})
           .field;
   std::vector<scene::SurfacePoint> points;
   std::vector<scene::SurfaceField::Spot> spots;
@@ -58,7 +59,8 @@ void register_look_ups() {
   add("field/value of the element, 3 lanes", [](const Solved& s, std::size_t i) {
     return s.spots[i].element == scene::SurfaceField::kNone
                ? Spectrum<kLanes>()
-               : s.field.value<kLanes>(s.field.irradiance.indirect, s.spots[i].element, scene::Side::Front);
+               : s.field.value<kLanes>(s.field.irradiance.indirect, s.spots[i].element,
+                                       scene::Side::Front);
   });
   add("field/weights of interpolation", [](const Solved& s, std::size_t i) {
     return s.field.stencil(s.spots[i], scene::Side::Front);
@@ -66,8 +68,8 @@ void register_look_ups() {
   add("field/all of it, interpolated, 3 lanes", [](const Solved& s, std::size_t i) {
     const scene::SurfacePoint& p = s.points[i];
     const auto spot = s.field.spot(s.scene, p.object, p.triangle, p.position);
-    return s.field.interpolate<kLanes>(s.field.irradiance.indirect, s.field.stencil(spot, scene::Side::Front),
-                                       scene::Side::Front);
+    return s.field.interpolate<kLanes>(
+        s.field.irradiance.indirect, s.field.stencil(spot, scene::Side::Front), scene::Side::Front);
   });
 }
 

@@ -1,6 +1,8 @@
-// Rays against bare Embree, look-ups in a solved field, choice of lights, solving of rows: one thread.
+// Rays against bare Embree, look-ups in a solved field, choice of lights, solving of rows: one
+// thread.
 //
-//   hot_paths --benchmark_format=json --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true
+//   hot_paths --benchmark_format=json --benchmark_repetitions=5
+//   --benchmark_enable_random_interleaving=true
 #include <benchmark/benchmark.h>
 
 #include "hot_paths.h"

@@ -40,7 +40,8 @@ const Stage& building() {
 
 /// A hall under panes, trees and chairs as instances.
 const Stage& atrium_hall() {
-  const std::filesystem::path file = std::filesystem::path(ATRIUM_SOURCE_DIR) / "scenes/benchmark/daylit_atrium.yaml";
+  const std::filesystem::path file =
+      std::filesystem::path(ATRIUM_SOURCE_DIR) / "scenes/benchmark/daylit_atrium.yaml";
   static const Stage stage = [&] {
     scene::Scene made = scene::build_scene(scene::read_model({file}));
     const Eigen::Affine3d camera = made.cameras.at(0).to_scene;
@@ -90,7 +91,8 @@ std::size_t transmittance(const Stage& s, const Rays& rays) {
   return blocked;
 }
 
-void add(const std::string& name, const Stage& (*stage)(), Rays RaySets::*rays, const Trace& trace) {
+void add(const std::string& name, const Stage& (*stage)(), Rays RaySets::*rays,
+         const Trace& trace) {
   benchmark::RegisterBenchmark(("rays/" + name).c_str(), [=](benchmark::State& state) {
     const Stage& s = stage();
     for (auto _ : state) {
@@ -102,7 +104,8 @@ void add(const std::string& name, const Stage& (*stage)(), Rays RaySets::*rays, 
 }
 
 void add_closest(const std::string& kind, const Stage& (*stage)(), Rays RaySets::*rays) {
-  add(kind + "/bare rtcIntersect1", stage, rays, [](const Stage& s, const Rays& r) { return s.bare.single(r); });
+  add(kind + "/bare rtcIntersect1", stage, rays,
+      [](const Stage& s, const Rays& r) { return s.bare.single(r); });
   add(kind + "/bare rtcIntersect8", stage, rays,
       [](const Stage& s, const Rays& r) { return s.bare.packets(r, kRaysOfAPoint); });
   add(kind + "/bare rtcIntersect1M", stage, rays,

@@ -26,8 +26,8 @@ struct System {
   Rows<3> rows = trace();
 
   Rows<3> trace() {
-    return trace_rows<3>(problem, {}, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1), 0, kRaysOfARow,
-                         work, counters);
+    return trace_rows<3>(problem, {}, {}, std::vector<std::uint8_t>(problem.sides.active.size(), 1),
+                         0, kRaysOfARow, work, counters);
   }
 };
 System& row_system() {
@@ -41,13 +41,15 @@ void run_trace(benchmark::State& state) {
     Rows<3> rows = s.trace();
     benchmark::DoNotOptimize(rows);
   }
-  state.SetItemsProcessed(state.iterations() * kRaysOfARow * static_cast<std::int64_t>(s.rows.size()));
+  state.SetItemsProcessed(state.iterations() * kRaysOfARow *
+                          static_cast<std::int64_t>(s.rows.size()));
 }
 
 /// Items: entries read, all iterations together.
 void run_solve(benchmark::State& state) {
   System& s = row_system();
-  const SideValues<3> source(s.problem.side_count(), Spectrum<3>(1.0f)), none(s.problem.side_count());
+  const SideValues<3> source(s.problem.side_count(), Spectrum<3>(1.0f)),
+      none(s.problem.side_count());
   std::int64_t applications = 0;
   for (auto _ : state) {
     SideValues<3> exchange(s.problem.side_count());
@@ -57,7 +59,8 @@ void run_solve(benchmark::State& state) {
   state.SetItemsProcessed(applications * static_cast<std::int64_t>(s.rows.entries.size()));
   state.counters["entries"] = static_cast<double>(s.rows.entries.size());
   state.counters["sides"] = static_cast<double>(s.rows.size());
-  state.counters["iterations"] = static_cast<double>(applications) / static_cast<double>(state.iterations());
+  state.counters["iterations"] =
+      static_cast<double>(applications) / static_cast<double>(state.iterations());
 }
 
 }  // namespace
