@@ -11,13 +11,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include <embree3/rtcore.h>
-
+#include "bare_embree.h"
 #include "building.h"
 #include "hemisphere.h"
 #include "passes.h"
@@ -35,112 +33,6 @@ double cpu_seconds() {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
-
-/// Embree without anything of ours: one geometry per object, as scene::RayQuery has it.
-class Bare {
- public:
-  explicit Bare(const scene::Scene& scene) : device_(rtcNewDevice(nullptr)) {
-    top_ = rtcNewScene(device_);
-    rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST);
-    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-      const scene::Mesh& mesh = scene.mesh_of(scene::ObjectId(i));
-      RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      std::memcpy(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                          mesh.positions.size()),
-                  mesh.positions.data(), mesh.positions.size() * 12);
-      std::memcpy(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                          mesh.triangles.size()),
-                  mesh.triangles.data(), mesh.triangles.size() * 12);
-      rtcCommitGeometry(g);
-      rtcAttachGeometryByID(top_, g, i);
-      rtcReleaseGeometry(g);
-    }
-    rtcCommitScene(top_);
-  }
-  ~Bare() {
-    rtcReleaseScene(top_);
-    rtcReleaseDevice(device_);
-  }
-
-  /// \return  the number of hits.
-  std::size_t single(const std::vector<Ray>& rays) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    std::size_t hits = 0;
-    for (const Ray& ray : rays) {
-      RTCRayHit h = ray_hit(ray);
-      rtcIntersect1(top_, &context, &h);
-      hits += h.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1U : 0U;
-    }
-    return hits;
-  }
-
-  /// Eight at a time, within groups of `group` rays sorted by octant of the direction.
-  std::size_t packets(const std::vector<Ray>& rays, std::size_t group) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    std::size_t hits = 0;
-    std::vector<std::uint32_t> order(group);
-    for (std::size_t first = 0; first + group <= rays.size(); first += group) {
-      for (std::uint32_t i = 0; i < group; ++i) order[i] = i;
-      const auto octant = [&](std::uint32_t i) {
-        const Vec3f& d = rays[first + i].direction;
-        return (d.x() < 0) + 2 * (d.y() < 0) + 4 * (d.z() < 0);
-      };
-      std::stable_sort(order.begin(), order.end(),
-                       [&](std::uint32_t a, std::uint32_t b) { return octant(a) < octant(b); });
-      for (std::size_t k = 0; k < group; k += 8) {
-        alignas(32) RTCRayHit8 h;
-        alignas(32) int valid[8];
-        for (std::size_t i = 0; i < 8; ++i) {
-          valid[i] = k + i < group ? -1 : 0;
-          if (valid[i] != 0) set(h, i, rays[first + order[k + i]]);
-        }
-        rtcIntersect8(valid, top_, &context, &h);
-        for (int i = 0; i < 8; ++i)
-          hits += valid[i] != 0 && h.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID ? 1U : 0U;
-      }
-    }
-    return hits;
-  }
-
-  /// rtcIntersect1M, `group` rays at a time.
-  std::size_t stream(const std::vector<Ray>& rays, std::size_t group) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    std::size_t hits = 0;
-    std::vector<RTCRayHit> h(group);
-    for (std::size_t first = 0; first + group <= rays.size(); first += group) {
-      for (std::size_t i = 0; i < group; ++i) h[i] = ray_hit(rays[first + i]);
-      rtcIntersect1M(top_, &context, h.data(), static_cast<unsigned>(group), sizeof(RTCRayHit));
-      for (const RTCRayHit& r : h) hits += r.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1U : 0U;
-    }
-    return hits;
-  }
-
- private:
-  static RTCRayHit ray_hit(const Ray& ray) {
-    RTCRayHit h;
-    h.ray.org_x = ray.origin.x(), h.ray.org_y = ray.origin.y(), h.ray.org_z = ray.origin.z();
-    h.ray.dir_x = ray.direction.x(), h.ray.dir_y = ray.direction.y();
-    h.ray.dir_z = ray.direction.z();
-    h.ray.tnear = ray.tmin, h.ray.tfar = ray.tmax, h.ray.time = 0.0f;
-    h.ray.mask = 0xffffffffU, h.ray.id = 0, h.ray.flags = 0;
-    h.hit.geomID = h.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    return h;
-  }
-  static void set(RTCRayHit8& h, std::size_t i, const Ray& ray) {
-    h.ray.org_x[i] = ray.origin.x(), h.ray.org_y[i] = ray.origin.y();
-    h.ray.org_z[i] = ray.origin.z(), h.ray.dir_x[i] = ray.direction.x();
-    h.ray.dir_y[i] = ray.direction.y(), h.ray.dir_z[i] = ray.direction.z();
-    h.ray.tnear[i] = ray.tmin, h.ray.tfar[i] = ray.tmax, h.ray.time[i] = 0.0f;
-    h.ray.mask[i] = 0xffffffffU, h.ray.id[i] = 0, h.ray.flags[i] = 0;
-    h.hit.geomID[i] = h.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
-
-  RTCDevice device_;
-  RTCScene top_;
-};
 
 double wall_seconds() {
   timespec t{};
@@ -217,7 +109,7 @@ void measure(const scene::RayQuery& query, const material::SpectralBasis& basis,
   generate();
   std::printf("%zu rays, %d per side\n", rays.size(), per_side);
 
-  const Bare bare(scene);
+  const bench::BareEmbree bare(scene);
   const scene::Control control;
   Work work(control, 0.0);
   Counters counters;
@@ -251,7 +143,7 @@ void measure(const scene::RayQuery& query, const material::SpectralBasis& basis,
       {"gather", [&] {
          Counters c;
          Tally<N> tally(problem.side_count(), 1, problem.sides.any_coupled);
-         sample_gather<N>(problem, {field}, {}, top_up(problem, tally, active, per_side), tally,
+         sample_gather<N>(problem, {field}, {}, {}, top_up(problem, tally, active, per_side), tally,
                           work, c);
          hits += tally.valid(active.front());
          return static_cast<std::size_t>(c[Counter::RaysRow]);

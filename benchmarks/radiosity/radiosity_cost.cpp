@@ -5,11 +5,7 @@
 //
 // @N: about how many elements for this scene, instead of --elements.
 //
-// docs/radiosity-cost.md:
-//   radiosity_cost furnished_room.yaml@20000 white_corridor.yaml@20000 sun_patch.yaml@20000
-//       mirror_atrium.yaml@20000 office_floor.yaml@60000 (all of scenes/benchmark) --errors 0.1
-//       0.05 0.02 --scales 1 --paths 64 256 --receivers 300 --reference-rays 1e7 --shooting 0
-//       --docs docs
+// docs/radiosity-cost.md is written by benchmarks/run.py --only radiosity, which has the options.
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
@@ -265,8 +261,8 @@ std::string section(const SceneCost& s) {
 
 const char* kIntroduction =
     "# Cost of the radiosity pass at equal error\n\n"
-    "Made by `benchmarks/radiosity/radiosity_cost` (see its head for the command). Errors are "
-    "those "
+    "Made by `benchmarks/run.py --only radiosity` (program `radiosity_cost`); a summary, path "
+    "tracing and shooting beside it: [benchmarks.md](benchmarks.md). Errors are those "
     "of total irradiance: e = difference / max(E, 1 % of the mean E), RMS over receivers that lie "
     "uniform by area. *RMS error*: receivers are patches of 0.2 m, of which the mean counts, "
     "whatever the elements; *points*: by the value of the element at a point, *interpolated*: as "

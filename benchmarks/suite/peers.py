@@ -1,0 +1,176 @@
+"""The programs that render the scenes of peer_scenes: is one there, which version, and a picture by it."""
+
+import importlib.util
+import os
+import pathlib
+import re
+import shutil
+import sys
+
+from suite import machine, peer_scenes, program
+
+HERE = pathlib.Path(__file__).resolve().parent
+SIZE = (96, 72)
+
+
+def newest_llvm():
+    """Mitsuba's compiled variant takes any LLVM, and fails with one before 17: for its environment."""
+    found = {
+        int(match.group(1)): str(path)
+        for path in pathlib.Path("/usr/lib").glob("*/libLLVM*.so*")
+        if (match := re.search(r"libLLVM[^0-9]*([0-9]+)", path.name))
+    }
+    if not found or "DRJIT_LIBLLVM_PATH" in os.environ:
+        return {}
+    return {"DRJIT_LIBLLVM_PATH": found[max(found)]}
+
+
+class Atrium:
+    """By radiosity to an asked error, or by path tracing with fixed samples, as other programs have."""
+
+    def __init__(self, context, method):
+        self.program, self.method, self.name = context.atrium, method, f"Atrium, {method}"
+        self.budgets = [0.2, 0.1, 0.05, 0.02] if method == "hybrid" else [4, 16, 64, 256, 1024]
+        self.unit = "error asked" if method == "hybrid" else "samples"
+        self.ending, self.write = ".yaml", peer_scenes.atrium
+
+    def missing(self):
+        return ""
+
+    def version(self):
+        return machine.first_line([self.program, "--version"])
+
+    def render(self, file, _scene, budget, seed, out):
+        option = "--error" if self.method == "hybrid" else "--samples"
+        return program.atrium(
+            self.program,
+            "render",
+            file,
+            "-o",
+            out,
+            "--size",
+            f"{SIZE[0]}x{SIZE[1]}",
+            "--spectrum",
+            "rgb",
+            "--method",
+            self.method,
+            option,
+            budget,
+            "--seed",
+            seed,
+        )[0]
+
+
+class Mitsuba:
+    def __init__(self, variant):
+        self.variant, self.name = variant, f"Mitsuba 3, {variant}"
+        self.budgets, self.unit = [4, 16, 64, 256, 1024], "samples"
+        self.ending, self.write = ".xml", peer_scenes.mitsuba
+
+    def missing(self):
+        if importlib.util.find_spec("mitsuba") is None:
+            return "no Python module mitsuba"
+        try:
+            program.run(
+                [
+                    sys.executable,
+                    "-c",
+                    f"import mitsuba; mitsuba.set_variant('{self.variant}'); "
+                    "mitsuba.render(mitsuba.load_dict(mitsuba.cornell_box()), spp=1)",
+                ],
+                environment=newest_llvm(),
+            )
+        except program.Failed as failure:
+            said = [line for line in str(failure).splitlines() if "ERROR" in line or "Error" in line]
+            return f"{self.variant} does not run here: " + (said[0][:80] if said else "no reason given")
+        return ""
+
+    def version(self):
+        return machine.first_line([sys.executable, "-c", "import mitsuba; print(mitsuba.__version__)"])
+
+    def render(self, file, _scene, budget, seed, out):
+        cost, text = program.run(
+            [sys.executable, HERE / "mitsuba_render.py", file, out, budget, seed, self.variant],
+            environment=newest_llvm(),
+        )
+        cost.memory = float(text.split()[-1])
+        return cost
+
+
+class PovRay:
+    """A budget is its radiosity's count of rays; error_bound falls with its root."""
+
+    name, ending, unit = "POV-Ray, radiosity", ".pov", "count"
+    budgets = [50, 200, 800]
+
+    def __init__(self):
+        self.write = peer_scenes.pov
+
+    def missing(self):
+        return "" if shutil.which("povray") else "no program povray"
+
+    def version(self):
+        return "3.7"
+
+    def render(self, file, _scene, budget, _seed, out):
+        values = {"COUNT": budget, "ERROR_BOUND": f"{0.5 * (50 / budget) ** 0.5:.3f}", "RECURSION": 5}
+        text = file.read_text(encoding="utf-8")
+        for name, value in values.items():
+            text = text.replace(name, str(value))
+        own = file.with_name(f"{file.stem}-{budget}.pov")
+        own.write_text(text, encoding="utf-8")
+        return program.run(
+            [
+                "povray",
+                f"+I{own}",
+                f"+O{out}",
+                "+FE",
+                f"+W{SIZE[0]}",
+                f"+H{SIZE[1]}",
+                "-D",
+                "-GA",
+                "+A0.0",
+                "+AM1",
+                "+R2",
+            ]
+        )[0]
+
+
+class Radiance:
+    """A budget is the number of ambient divisions; six ambient bounces."""
+
+    name, ending, unit = "Radiance, rpict", ".rad", "-ad"
+    budgets = [256, 1024, 4096]
+
+    def __init__(self):
+        self.write = peer_scenes.radiance
+
+    def missing(self):
+        return "" if shutil.which("rpict") and shutil.which("oconv") else "no programs rpict and oconv"
+
+    def version(self):
+        return machine.first_line(["rpict", "-version"])
+
+    def render(self, file, scene, budget, _seed, out):
+        octree, picture = file.with_suffix(".oct"), out.with_suffix(".hdr")
+        view = " ".join(str(w) for w in peer_scenes.radiance_view(scene, SIZE))
+        cost, _ = program.run(
+            [
+                "sh",
+                "-c",
+                f"oconv '{file}' > '{octree}' && rpict {view} -ab 6 -ad {budget} -as {budget // 4} "
+                f"-aa 0.1 -ar 128 -lw 1e-4 -ds 0.05 -dj 0.9 '{octree}' > '{picture}'",
+            ]
+        )
+        return cost
+
+
+def all_programs(context):
+    return [
+        Atrium(context, "hybrid"),
+        Atrium(context, "path"),
+        Mitsuba("scalar_rgb"),
+        Mitsuba("llvm_ad_rgb"),
+        PovRay(),
+        Radiance(),
+    ]
