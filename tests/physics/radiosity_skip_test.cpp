@@ -71,9 +71,11 @@ TEST(Views, WhatNoPictureShowsGetsFewerRays) {
   const Solved all(two_rooms(), options);
   options.views = {back_to_the_door()};
   const Solved seen(two_rooms(), options);
-  const auto rays = [](const Solved& s) { return s.result.counters[Counter::RaysRow]; };
+  const auto rays = [](const Solved& s) {
+    return static_cast<double>(s.result.counters[Counter::RaysRow]);
+  };
   const auto record = [&](const char* what, const Solved& s) {
-    RecordProperty(std::string(what) + "_rays", std::to_string(rays(s)));
+    RecordProperty(std::string(what) + "_rays", std::to_string(s.result.counters[Counter::RaysRow]));
     for (const bool second : {false, true})
       RecordProperty(std::string(what) + (second ? "_error_other_room" : "_error_this_room"),
                      std::to_string(room(s, second).error / room(s, second).mean));
@@ -165,7 +167,8 @@ TEST(Skip, UnlitRoomsCostAFirstRoundOfRays) {
   // Every ray of a diffuse scene is one segment. A quarter of those that gather makes the field
   // that the rest read.
   EXPECT_EQ(one.result.counters[Counter::RaysRow], 16 * dark + (64 + 128) * lit);
-  EXPECT_LT(one.result.counters[Counter::RaysRow], 0.6 * both.result.counters[Counter::RaysRow]);
+  EXPECT_LT(static_cast<double>(one.result.counters[Counter::RaysRow]),
+            0.6 * static_cast<double>(both.result.counters[Counter::RaysRow]));
 }
 
 // Black surfaces and mirrors have no elements: no samples, no rows.

@@ -11,7 +11,7 @@ namespace atrium::testing {
 class SceneMaker {
  public:
   scene::MaterialId material(material::Material m) {
-    m.name = "m" + std::to_string(model_.materials.size());
+    m.name = std::string("m").append(std::to_string(model_.materials.size()));
     model_.materials.push_back(std::move(m));
     return scene::MaterialId(model_.materials.size() - 1);
   }
