@@ -15,10 +15,14 @@ SCENES = {
     "benchmark/small_room": (2048, {"pixel": [0.1, 0.05, 0.02], "block": [0.02, 0.01]}),
     "benchmark/mirror_atrium": (1024, {"pixel": [0.1, 0.05], "block": [0.02, 0.01]}),
     "benchmark/cove_office": (1024, {"pixel": [0.1], "block": [0.05, 0.02]}),
+    "benchmark/cornell_glass": (1024, {"pixel": [0.1], "block": [0.02]}),
+    "benchmark/corridor_door": (1024, {"pixel": [0.1], "block": [0.02]}),
 }
 MORE = {
     "benchmark/mirror_atrium": {"pixel": [0.02], "block": []},
     "benchmark/cove_office": {"pixel": [0.05], "block": [0.01]},
+    "benchmark/cornell_glass": {"pixel": [0.05], "block": [0.01]},
+    "benchmark/corridor_door": {"pixel": [0.05], "block": [0.01]},
 }
 METHODS = ("hybrid", "path")
 
