@@ -236,10 +236,8 @@ bool render_view(const Pictures& p, const ViewJob& job, std::size_t number, std:
   if (view.stopped_by == "radiosity")
     p.session.progress.warning(
         "the error asked for is not reached: the radiosity's own is larger, and samples do not "
-        "lower "
-        "it; solve to a smaller error first (atrium solve --error E -o FILE.atrium, then "
-        "--solution "
-        "FILE.atrium) or use --method path: " +
+        "lower it; solve to a smaller error first (atrium solve --error E -o FILE.atrium, then "
+        "--solution FILE.atrium) or use --method path: " +
         describe(view));
   statistics.views.push_back(std::move(view));
   return true;

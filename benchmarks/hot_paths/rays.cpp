@@ -54,11 +54,32 @@ const Stage& atrium_hall() {
 using Rays = std::vector<Ray>;
 using Trace = std::function<std::size_t(const Stage&, const Rays&)>;
 
-std::size_t closest(const Stage& s, const Rays& rays) {
+/// Rays for which found(ray, counters) is true.
+template <class Found>
+std::size_t count(const Rays& rays, Found&& found) {
   Counters counters;
   std::size_t hits = 0;
-  for (const Ray& r : rays) hits += s.query.closest(r, counters, Counter::RaysGather) ? 1U : 0U;
+  for (const Ray& r : rays) hits += found(r, counters) ? 1U : 0U;
   return hits;
+}
+std::size_t closest(const Stage& s, const Rays& rays) {
+  return count(rays, [&](const Ray& r, Counters& c) {
+    return s.query.closest(r, c, Counter::RaysGather).has_value();
+  });
+}
+std::size_t occluded(const Stage& s, const Rays& rays) {
+  return count(
+      rays, [&](const Ray& r, Counters& c) { return s.query.occluded(r, c, Counter::RaysShadow); });
+}
+std::size_t surfaces(const Stage& s, const Rays& rays) {
+  return count(rays, [&](const Ray& r, Counters& c) {
+    return s.shading.closest(r, c, Counter::RaysGather).has_value();
+  });
+}
+std::size_t transmittance(const Stage& s, const Rays& rays) {
+  return count(rays, [&](const Ray& r, Counters& c) {
+    return s.shading.transmittance(r, c, Counter::RaysShadow).is_zero();
+  });
 }
 std::size_t closest_of_many(const Stage& s, const Rays& rays) {
   Counters counters;
@@ -71,26 +92,6 @@ std::size_t closest_of_many(const Stage& s, const Rays& rays) {
   }
   return found;
 }
-std::size_t occluded(const Stage& s, const Rays& rays) {
-  Counters counters;
-  std::size_t hits = 0;
-  for (const Ray& r : rays) hits += s.query.occluded(r, counters, Counter::RaysShadow) ? 1U : 0U;
-  return hits;
-}
-std::size_t surfaces(const Stage& s, const Rays& rays) {
-  Counters counters;
-  std::size_t hits = 0;
-  for (const Ray& r : rays) hits += s.shading.closest(r, counters, Counter::RaysGather) ? 1U : 0U;
-  return hits;
-}
-std::size_t transmittance(const Stage& s, const Rays& rays) {
-  Counters counters;
-  std::size_t blocked = 0;
-  for (const Ray& r : rays)
-    blocked += s.shading.transmittance(r, counters, Counter::RaysShadow).is_zero() ? 1U : 0U;
-  return blocked;
-}
-
 void add(const std::string& name, const Stage& (*stage)(), Rays RaySets::*rays,
          const Trace& trace) {
   benchmark::RegisterBenchmark(("rays/" + name).c_str(), [=](benchmark::State& state) {

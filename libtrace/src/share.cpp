@@ -200,8 +200,7 @@ class Level {
         if (qx < 0 || qy < 0 || qx >= g_.width || qy >= g_.height) continue;
         const std::size_t q = index(qx, qy);
         if (!(g_.depth[q] > 0.0f)) continue;
-        const float w = kSpline[static_cast<std::size_t>(std::abs(dx))] *
-                        kSpline[static_cast<std::size_t>(std::abs(dy))];
+        const float w = spline({dx, dy});
         sum += w * in_.variance[q];
         weights += w;
       }

@@ -242,10 +242,10 @@ class ViewTracer {
     constexpr auto kSets = static_cast<std::uint32_t>(kReplicates);
     const std::uint32_t stream = scene::hash_combine(pixel, number % kSets);
     const std::uint32_t index = number / kSets;
-    const bool checked = checks_ && (scene::hash32(stream) + index) % kCheckEvery == 0;
+    if (!checks_ || (scene::hash32(stream) + index) % kCheckEvery != 0)
+      return trace_from_eye(view_, ray, guide, sampler, nullptr, counters);
     scene::Sampler numbers(view_.options.seed ^ kCheckStream, stream, index);
-    PixelSample<N> sample =
-        trace_from_eye(view_, ray, guide, sampler, checked ? &numbers : nullptr, counters);
+    PixelSample<N> sample = trace_from_eye(view_, ray, guide, sampler, &numbers, counters);
     sample.field_missed *= static_cast<float>(kCheckEvery);
     return sample;
   }
