@@ -9,8 +9,8 @@
 #include "statistics.h"
 
 #ifdef ATRIUM_WITH_RADIOSITY
-#include "sensor_table.h"
 #include "sensor_file.h"
+#include "sensor_table.h"
 #include "sensors.h"
 #endif
 

@@ -13,8 +13,6 @@ namespace atrium::app {
 
 namespace {
 
-constexpr std::size_t kMostSensors = 10'000'000;
-
 bool separates(char c) { return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == ';'; }
 
 /// The numbers of a line. False for anything that is none.

@@ -5,14 +5,9 @@
 #include <cmath>
 
 #include "material/error.h"
+#include "sensor_file.h"
 
 namespace atrium::app {
-
-namespace {
-
-constexpr double kMostSensors = 1e7;
-
-}  // namespace
 
 std::vector<radiosity::Sensor> grid_sensors(const SensorGrid& grid) {
   const Vec3d origin(grid.origin.data());
@@ -36,7 +31,7 @@ std::vector<radiosity::Sensor> work_plane_sensors(const LoadedScene& loaded, dou
   };
   const double nx = cells(size.x());
   const double nz = cells(size.z());
-  if (!(nx * nz <= kMostSensors))
+  if (!(nx * nz <= static_cast<double>(kMostSensors)))
     throw Error("--spacing: makes more than ten million sensors in this scene");
   const Vec3d middle = scene.bounds.center() + scene.origin;
   std::vector<radiosity::Sensor> sensors;
