@@ -10,6 +10,7 @@
 #include "material/error.h"
 #include "picture_checkpoint.h"
 #include "picture_pass.h"
+#include "picture_radiosity.h"
 #include "radiosity_pass.h"
 #include "scene/image_io.h"
 #include "scene/output_file.h"
@@ -55,57 +56,6 @@ void check_outputs(const RenderCommand& c) {
   if (!c.common.stats.empty()) scene::check_output(c.common.stats);
 }
 
-bool uses_radiosity(const RenderCommand& c) { return c.method == trace::Method::Hybrid; }
-
-scene::SurfaceField load_solution(const RenderCommand& c, const LoadedScene& loaded) {
-  scene::Solution solution = scene::read_solution(c.solution);
-  scene::check_solution(solution, *loaded.scene, describe_lanes(loaded, c.solve), c.solution);
-  return std::move(solution.field);
-}
-
-/// The field that the picture reads; empty if none is needed.
-scene::SurfaceField find_field(Session& session, const RenderCommand& c, const LoadedScene& loaded,
-                               double time_limit, Statistics& statistics) {
-  std::string why;
-  if (!uses_radiosity(c)) {
-    why = "the method uses none";
-  } else if (!c.solution.empty()) {
-    why = "read from " + c.solution;
-    session.detail("skipped: radiosity: " + why);
-    statistics.radiosity_skipped = why;
-    return load_solution(c, loaded);
-  } else {
-    (void)radiosity_needed(loaded.features, why);
-  }
-  if (!why.empty()) {
-    session.detail("skipped: radiosity: " + why);
-    statistics.radiosity_skipped = why;
-    return {};
-  }
-  RadiosityRun run = run_radiosity(session, loaded, c.solve, time_limit);
-  statistics.solve = run.summary;
-  statistics.counters += run.summary.counters;
-  return std::move(run.field);
-}
-
-void save_solution(Session& session, const RenderCommand& c, const LoadedScene& loaded,
-                   const scene::SurfaceField& field) {
-  if (c.save_solution.empty()) return;
-  if (field.empty()) {
-    session.progress.warning(c.save_solution + ": not written, nothing was solved");
-    return;
-  }
-  session.clock.enter("write");
-  scene::write_solution({.field = field,
-                         .groups = {},
-                         .state = {},
-                         .scene_hash = scene::hash_scene(*loaded.scene),
-                         .basis = describe_lanes(loaded, c.solve),
-                         .options = describe(c.solve)},
-                        c.save_solution);
-  session.progress.note("wrote " + c.save_solution);
-}
-
 void add_metadata(scene::Image& image, const RenderCommand& c, const LoadedScene& loaded,
                   const trace::RenderResult& result) {
   const bool nits = loaded.scene->unit == scene::RadianceUnit::Nit;
@@ -119,36 +69,13 @@ void add_metadata(scene::Image& image, const RenderCommand& c, const LoadedScene
   image.metadata["atrium:complete"] = result.complete ? "yes" : "no";
 }
 
-std::vector<Pack> solve_packs(Session& session, const RenderCommand& c, LoadedScene& loaded,
-                              Statistics& statistics) {
-  const material::SpectralBasis whole = loaded.basis;
-  std::vector<Pack> packs;
-  for (material::SpectralBasis& basis : whole.packs()) packs.push_back({std::move(basis), {}});
-  if (packs.size() > 1 && !(c.solution.empty() && c.save_solution.empty()))
-    throw Error("--spectrum: a solution file holds up to " + std::to_string(kMaxLanes) +
-                " lanes, not " + std::to_string(whole.lanes()));
-  if (packs.size() > 1 && !c.checkpoint.empty())
-    throw Error("--checkpoint: holds up to " + std::to_string(kMaxLanes) + " lanes, not " +
-                std::to_string(whole.lanes()));
-  if (packs.size() > 1 && !c.preview.empty())
-    throw Error("--preview: a picture of more than " + std::to_string(kMaxLanes) +
-                " bands is rendered in parts");
-  for (std::size_t i = 0; i < packs.size(); ++i) {
-    const double limit = time_share(session, c, 0.5 / static_cast<double>(packs.size() - i));
-    loaded.basis = packs[i].basis;
-    packs[i].field = find_field(session, c, loaded, limit, statistics);
-  }
-  loaded.basis = whole;
-  return packs;
-}
-
 /// Everything the pictures of a run have in common.
 struct Pictures {
   Session& session;
   const RenderCommand& command;
   const PictureEffort& effort;
   const LoadedScene& loaded;
-  const std::vector<Pack>& packs;
+  PictureRadiosity& radiosity;
   trace::ToneMapOptions tone;
 };
 
@@ -215,13 +142,22 @@ bool render_view(const Pictures& p, const ViewJob& job, std::size_t number, std:
     checkpoint.emplace(p.session, c, p.loaded, job.camera, options).attach(options);
   const scene::Control control = picture_control(p.session, number, count, job);
   const double share = 1.0 / static_cast<double>(count - number);
-  const Stopwatch watch;
-  trace::RenderResult result =
-      trace_packs(p.session, c, options, p.loaded, p.packs, job.camera, share, control);
+  trace::RenderResult result;
+  ViewSummary work;  // also of pictures that a finer solution makes again
+  do {
+    options.field_share = p.radiosity.field_share();
+    const Stopwatch watch;
+    result = trace_packs(p.session, c, options, p.loaded, p.radiosity.packs(), job.camera, share,
+                         control);
+    work.wall += watch.wall();
+    work.cpu += watch.cpu();
+    work.counters += result.counters;
+  } while (result.stopped_by == "radiosity" && p.radiosity.refine(result));
   ViewSummary view = summarise(job, result);
-  view.wall = watch.wall();
-  view.cpu = watch.cpu();
-  statistics.counters += result.counters;
+  view.wall = work.wall;
+  view.cpu = work.cpu;
+  view.counters = work.counters;
+  statistics.counters += work.counters;
   if (job.frame > 0 && !result.complete && p.session.interrupted()) return false;
   p.session.clock.enter("write");
   add_metadata(result.image, c, p.loaded, result);
@@ -258,8 +194,8 @@ void render_walk(Pictures p, const Walk& walk, const std::vector<ViewJob>& frame
       std::any_of(p.command.outputs.begin(), p.command.outputs.end(), scene::is_display_ending) ||
       scene::is_display_ending(p.command.preview);
   if (!p.tone.ev && tone_mapped && !session.interrupted()) {
-    p.tone.ev =
-        walk_exposure(session, p.command, p.effort, p.loaded, p.packs, frames, statistics.counters);
+    p.tone.ev = walk_exposure(session, p.command, p.effort, p.loaded, p.radiosity.packs(), frames,
+                              statistics.counters);
     char text[64];
     std::snprintf(text, sizeof text, "exposure of all frames: --exposure %.4f", *p.tone.ev);
     session.progress.note(text);
@@ -333,10 +269,8 @@ int run_render(const RenderCommand& c, std::stop_token stop) {
   statistics.picture_target = c.error;
   statistics.block_target = c.block_error;
   with_views.solve.views = views_of(c, jobs);
-  const std::vector<Pack> packs = solve_packs(session, with_views, loaded, statistics);
-  save_solution(session, c, loaded, packs.front().field);
-  statistics.timing_of_solving = loaded.query->timing();
-  const Pictures pictures{session, c, effort, loaded, packs, c.tone};
+  PictureRadiosity radiosity(session, with_views, loaded, statistics);
+  const Pictures pictures{session, c, effort, loaded, radiosity, c.tone};
   if (walk)
     render_walk(pictures, *walk, jobs, statistics);
   else

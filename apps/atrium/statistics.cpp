@@ -226,6 +226,7 @@ void add_solve(JsonWriter& json, const Statistics& s) {
   if (s.solve) {
     json.member("elements", static_cast<std::uint64_t>(s.solve->elements));
     json.member("effort", s.solve->views == 0 ? "everywhere" : "views");
+    json.member("refinements", s.solve->refinements);
     json.member("iterations", s.solve->iterations);
     json.member("residual", s.solve->residual);
     json.member("error_estimate", s.solve->error_estimate);

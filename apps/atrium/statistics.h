@@ -32,6 +32,7 @@ struct SolveSummary {
   int iterations = 0;
   double residual = 0.0;
   int views = 0;                       ///< that the effort followed; 0: every surface matters
+  int refinements = 0;                 ///< solutions before this one that were too coarse
   std::optional<double> error_target;  ///< that was asked for
   double error_estimate = 0.0;
   double mesh_error = 0.0, mesh_error_target = 0.0;

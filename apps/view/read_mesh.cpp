@@ -15,8 +15,12 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 #include "check_cells.h"
 #include "material/error.h"
@@ -28,12 +32,39 @@
 namespace atrium::view {
 namespace {
 
+/// VTK's readers follow a null pointer where an array of cells is damaged in a piece that has no
+/// element for arrays of points.
+/// \return  the file with an empty one for its pieces; empty if all of them begin with one, as VTK
+/// writes them.
+std::string with_point_data(const std::string& file) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string_view xml = std::string_view(text).substr(0, text.find("<AppendedData"));
+  std::string result;
+  std::size_t copied = 0;
+  for (std::size_t at = xml.find("<Piece"); at != xml.npos; at = xml.find("<Piece", at + 1)) {
+    const std::size_t end = xml.find('>', at);
+    if (end == xml.npos) break;
+    const std::size_t next = std::min(xml.find_first_not_of(kBlank, end + 1), xml.size());
+    if (xml[end - 1] == '/' || xml.substr(next).starts_with("<PointData")) continue;
+    result.append(text, copied, end + 1 - copied).append("<PointData></PointData>");
+    copied = end + 1;
+  }
+  return copied > 0 ? result.append(text, copied) : result;
+}
+
 /// VTK answers damage with an error, with a short array, or with nothing at all: asked for all.
 template <class Reader>
 auto read_with(const std::string& file) {
   VtkErrors errors;
   vtkNew<Reader> reader;
-  reader->SetFileName(file.c_str());
+  if (const std::string text = with_point_data(file); text.empty()) {
+    reader->SetFileName(file.c_str());
+  } else {
+    reader->ReadFromInputStringOn();
+    reader->SetInputString(text);
+  }
   try {
     reader->Update();
   } catch (const std::length_error&) {  // of lists that no memory holds

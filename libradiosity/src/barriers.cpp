@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "material/material.h"
 #include "polygon.h"
@@ -45,6 +47,12 @@ std::pair<double, double> inside(const Corners& c, const Vec3d& n, const Vec3d& 
 }
 
 }  // namespace
+
+EdgeKey edge_key(const Vec3f& a, const Vec3f& b) {
+  const EdgeKey k{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+  const EdgeKey turned{b.x(), b.y(), b.z(), a.x(), a.y(), a.z()};
+  return std::min(k, turned);
+}
 
 std::optional<Barrier> within_triangle(const std::array<Vec3f, 3>& triangle,
                                        const Barrier& barrier) {
@@ -113,6 +121,48 @@ std::vector<Barrier> BarrierFinder::on(scene::ObjectId object, std::uint32_t tri
     if (last > first) result.push_back({p + first * d, p + last * d});
   }
   return result;
+}
+
+std::vector<Barrier> BarrierFinder::outlines_above(scene::ObjectId object, std::uint32_t triangle,
+                                                   double reach, double length) const {
+  constexpr double kParallel = 0.9999;  // within 0.8 degrees
+  const std::array<Vec3f, 3> corners = impl_->scene.corners(object, triangle);
+  const Corners c = to_double(corners);
+  const Vec3d n = unit_normal(c);
+  if (!n.allFinite()) return {};
+  const auto height = [&](const Vec3d& p) { return (p - c[0]).dot(n); };
+  Box box;
+  for (const Vec3d& p : c) box.extend(p.cast<float>()).extend((p + reach * n).cast<float>());
+  // Edges that two of an object's triangles share are no end of it.
+  std::map<std::pair<std::uint32_t, EdgeKey>, int> uses;
+  for (const std::uint32_t i : impl_->triangles.meeting(box)) {
+    const TriangleTree::Item& item = impl_->triangles.item(i);
+    const std::array<Vec3f, 3> other = impl_->scene.corners(item.object, item.triangle);
+    const Corners u = to_double(other);
+    if (!(std::abs(unit_normal(u).dot(n)) > kParallel)) continue;
+    const bool above = std::all_of(u.begin(), u.end(), [&](const Vec3d& p) {
+      return height(p) > 1e-3 * reach && height(p) < reach;
+    });
+    if (!above) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      ++uses[{item.object.value, edge_key(other[k], other[(k + 1) % 3])}];
+  }
+  const auto ends = [](const EdgeKey& e) {
+    return std::pair(Vec3d(e[0], e[1], e[2]), Vec3d(e[3], e[4], e[5]));
+  };
+  std::set<std::uint32_t> large;
+  for (const auto& [key, count] : uses) {
+    const auto [a, b] = ends(key.second);
+    if (count == 1 && (b - a).norm() > length) large.insert(key.first);
+  }
+  std::vector<Barrier> outlines;
+  for (const auto& [key, count] : uses) {
+    if (count != 1 || !large.contains(key.first)) continue;
+    const auto [a, b] = ends(key.second);
+    const Barrier edge{a - height(a) * n, b - height(b) * n, false};
+    if (const auto part = within_triangle(corners, edge)) outlines.push_back(*part);
+  }
+  return outlines;
 }
 
 }  // namespace atrium::radiosity

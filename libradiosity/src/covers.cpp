@@ -50,19 +50,6 @@ std::optional<Covers::Cover> Covers::of(const scene::SurfacePoint& point) const 
   return best;
 }
 
-namespace {
-
-using Edge = std::array<Vec3f, 2>;
-
-/// In an order of its own for both directions.
-std::array<float, 6> edge_key(const Edge& e) {
-  const std::array<float, 6> k{e[0].x(), e[0].y(), e[0].z(), e[1].x(), e[1].y(), e[1].z()};
-  const std::array<float, 6> turned{e[1].x(), e[1].y(), e[1].z(), e[0].x(), e[0].y(), e[0].z()};
-  return std::min(k, turned);
-}
-
-}  // namespace
-
 std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t triangle) const {
   const scene::SurfacePoint point =
       scene::surface_point(impl_->scene, object, triangle, 1.0f / 3, 1.0f / 3);
@@ -79,7 +66,7 @@ std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t t
   const Vec3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
   if (!n.allFinite()) return {};
   // Edges that two triangles of a cover share are no end of it.
-  std::map<std::pair<std::uint32_t, std::array<float, 6>>, int> uses;
+  std::map<std::pair<std::uint32_t, EdgeKey>, int> uses;
   for (const std::uint32_t i : impl_->triangles.meeting(box)) {
     const TriangleTree::Item& item = impl_->triangles.item(i);
     if (item.object.value >= object.value) continue;
@@ -89,7 +76,7 @@ std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t t
     });
     if (!in_plane) continue;
     for (std::size_t k = 0; k < 3; ++k)
-      ++uses[{item.object.value, edge_key({other[k], other[(k + 1) % 3]})}];
+      ++uses[{item.object.value, edge_key(other[k], other[(k + 1) % 3])}];
   }
   std::vector<Barrier> outlines;
   for (const auto& [key, count] : uses) {

@@ -23,6 +23,8 @@ constexpr double kWallLength = 2.0;  // cells; longer barriers part what is besi
 constexpr double kFreeLength = 0.5;  // cells; longer barriers that end free part what is near them
 constexpr std::size_t kMostFree = 64;   // of one facet; more stay as they are
 constexpr double kOutlineLength = 0.1;  // cells; shorter pieces of covers' outlines cut nothing
+constexpr double kHang = 0.75;       // cells; what hangs lower keeps light from what is below
+constexpr double kHangLength = 1.0;  // cells; the longest edge of what hangs, at least
 constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
 
 /// A corner, and which line the edge to the next one lies on.
@@ -95,6 +97,9 @@ class Divider {
         if ((b.b - b.a).norm() > tolerance_) barriers_.push_back(b);
       for (const Barrier& b : covers_.outlines_on(object_, t))
         if ((b.b - b.a).norm() > kOutlineLength * cell_) barriers_.push_back(b);
+      for (const Barrier& b :
+           finder_.outlines_above(object_, t, kHang * cell_, kHangLength * cell_))
+        if ((b.b - b.a).norm() > tolerance_) barriers_.push_back(b);
       first_.push_back(barriers_.size());
       if (barriers_.size() > kMostBarriers) return;
     }
@@ -184,13 +189,6 @@ class Divider {
     fragments_.clear();
     nodes_.clear();
     root_.clear();
-  }
-
-  using EdgeKey = std::array<float, 6>;
-  static EdgeKey edge_key(const Vec3f& a, const Vec3f& b) {
-    const EdgeKey k{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
-    const EdgeKey turned{b.x(), b.y(), b.z(), a.x(), a.y(), a.z()};
-    return std::min(k, turned);
   }
 
   /// Edges of two triangles of the facet get a line; others border nothing.

@@ -46,6 +46,13 @@ std::array<float, 2> tile_edge(const scene::Camera& camera, const RenderOptions&
   return {(a.origin - b.origin).norm(), (a.direction - b.direction).norm()};
 }
 
+/// Of how many samples one checks the field. What checks say of a whole picture depends on their
+/// number, and a small picture has few samples.
+std::uint32_t check_every(const PixelWindow& window) {
+  const double pixels = static_cast<double>(window.width) * window.height;
+  return static_cast<std::uint32_t>(std::clamp(pixels / 2048.0, 8.0, 64.0));
+}
+
 template <int N>
 RenderResult render_lanes(const scene::RayQuery& query, const material::SpectralBasis& basis,
                           const scene::Camera& camera, const scene::SurfaceField& field,
@@ -73,7 +80,7 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
              .shares = shares,
              .splats = from_lights,
              .checks = checks});
-  ViewTracer<N> tracer(view, eye, from_lights, checks, control);
+  ViewTracer<N> tracer(view, eye, from_lights, checks ? check_every(window) : 0, control);
   RoundState rounds;
   const auto archive = [&](auto& a) {
     const bool fits = film.archive(a) && tracer.archive(a);
@@ -86,6 +93,7 @@ RenderResult render_lanes(const scene::RayQuery& query, const material::Spectral
         options.state->data(), options.state->data() + options.state->size(), "state of a picture");
     if (!archive(reader) || rounds.samples.size() != tracer.cost().size()) reader.damaged();
     tracer.update_cost();
+    tracer.limit(rounds.samples, static_cast<std::uint32_t>(options.samples));
   }
   Saver saver(options);
   const auto save = [&] {

@@ -38,10 +38,10 @@ double excess(const Errors& e, const RenderOptions& o) {
                   o.block_error > 0.0 ? e.block.value / o.block_error : 0.0);
 }
 
-/// The same of what is certainly the field's error, which samples do not lower.
-double certain_excess(const Errors& e, const RenderOptions& o) {
-  return std::max(o.error > 0.0 ? e.pixel.least_field / o.error : 0.0,
-                  o.block_error > 0.0 ? e.block.least_field / o.block_error : 0.0);
+/// Is the field's own error, which samples do not lower, too large?
+bool is_field_too_large(const ErrorEstimate& e, double asked, double share) {
+  if (!(asked > 0.0)) return false;
+  return e.least_field > asked || (e.least_field > 0.0 && e.field > share * asked && share < 1.0);
 }
 
 std::string remark_of(const Errors& e, const RenderOptions& o) {
@@ -109,7 +109,8 @@ class Rounds {
         result_.stopped_by = "error";
         return;
       }
-      if (certain_excess(now, options_) > 1.0) {
+      if (is_field_too_large(now.pixel, options_.error, options_.field_share) ||
+          is_field_too_large(now.block, options_.block_error, options_.field_share)) {
         result_.stopped_by = "radiosity";
         return;
       }
@@ -131,6 +132,7 @@ class Rounds {
     result_.bias_estimate = e.pixel.bias;
     result_.field_error_estimate = e.pixel.field;
     result_.block_error_estimate = e.block.value;
+    result_.block_field_error_estimate = e.block.field;
     result_.complete = result_.stopped_by == "error" || result_.stopped_by == "samples" ||
                        result_.stopped_by == "radiosity";
     result_.image = film_.image(error_layer(samples));

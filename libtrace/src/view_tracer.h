@@ -57,14 +57,15 @@ class SerialProgress {
 template <int N>
 class ViewTracer {
  public:
-  /// \param from_lights  paths from lights, too. \param checks  some samples check the field.
-  ViewTracer(const View<N>& view, const Eye& eye, bool from_lights, bool checks,
+  /// \param from_lights  paths from lights, too. \param check_every  of so many samples one
+  /// checks the field; 0: none.
+  ViewTracer(const View<N>& view, const Eye& eye, bool from_lights, std::uint32_t check_every,
              const scene::Control& control)
       : view_(view),
         eye_(eye),
         window_(eye.window),
         from_lights_(from_lights),
-        checks_(checks),
+        check_every_(check_every),
         control_(control),
         tiles_(tiles_of(eye.window.width, eye.window.height)),
         guides_(tiles_.size()),
@@ -110,6 +111,12 @@ class ViewTracer {
   void update_cost() {
     for (std::size_t i = 0; i < done_.size(); ++i)
       cost_[i] = static_cast<float>(rays_[i]) / static_cast<float>(std::max(done_[i], 1U));
+  }
+  /// Of samples that pixels are to have: no more than `most`, or than there are. What a damaged
+  /// state asks for would have no end.
+  void limit(std::vector<std::uint32_t>& samples, std::uint32_t most) const {
+    for (std::size_t i = 0; i < done_.size(); ++i)
+      samples[i] = std::min(samples[i], std::max(most, done_[i]));
   }
   [[nodiscard]] const std::vector<float>& cost() const { return cost_; }
   [[nodiscard]] scene::Counters counters() const {
@@ -234,7 +241,7 @@ class ViewTracer {
              view_.shading.basis(), counters);
   }
 
-  /// Every kCheckEvery-th sample checks the field, from a random one of each pixel and replicate
+  /// Every check_every_-th sample checks the field, from a random one of each pixel and replicate
   /// on, with numbers of its own: the picture is the same with and without.
   PixelSample<N> trace_and_check(const scene::Ray& ray, std::uint32_t pixel, std::uint32_t number,
                                  GatherGuide& guide, scene::Sampler& sampler,
@@ -242,11 +249,11 @@ class ViewTracer {
     constexpr auto kSets = static_cast<std::uint32_t>(kReplicates);
     const std::uint32_t stream = scene::hash_combine(pixel, number % kSets);
     const std::uint32_t index = number / kSets;
-    if (!checks_ || (scene::hash32(stream) + index) % kCheckEvery != 0)
+    if (check_every_ == 0 || (scene::hash32(stream) + index) % check_every_ != 0)
       return trace_from_eye(view_, ray, guide, sampler, nullptr, counters);
     scene::Sampler numbers(view_.options.seed ^ kCheckStream, stream, index);
     PixelSample<N> sample = trace_from_eye(view_, ray, guide, sampler, &numbers, counters);
-    sample.field_missed *= static_cast<float>(kCheckEvery);
+    sample.field_missed *= static_cast<float>(check_every_);
     return sample;
   }
 
@@ -273,14 +280,13 @@ class ViewTracer {
   static constexpr std::size_t kTilesAtOnce = 64;
   static constexpr std::uint32_t kSamplesAtOnce = 4;
   static constexpr std::uint64_t kCheckStream = 0x636865636b21ULL;
-  static constexpr std::uint32_t kCheckEvery = 16;
   static constexpr std::uint64_t kLightStream = 0x6c696768747321ULL;
 
   const View<N>& view_;
   const Eye& eye_;
   const PixelWindow& window_;
   const bool from_lights_;
-  const bool checks_;
+  const std::uint32_t check_every_;
   const scene::Control& control_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<Tile> tiles_;

@@ -102,5 +102,50 @@ TEST(FreeWalls, LightDoesNotLeakBelowADoorLeaf) {
   }
 }
 
+/// A room with a board 2 cm above the floor, and what its elements say of the floor.
+struct BoardRoom {
+  static constexpr float kX0 = 0.83f, kX1 = 2.13f, kY0 = 1.04f, kY1 = 1.67f, kHeight = 0.02f;
+  Solved solved;
+
+  explicit BoardRoom(double size)
+      : solved(make(), {.element_size = size, .max_level = 0, .direct_samples = 64}) {}
+
+  static scene::Scene make() {
+    SceneMaker maker;
+    const auto white = maker.material(test::diffuse(kReflectance));
+    maker.room({0, 0, 0}, {4, 3, 2.5f}, white);
+    maker.quad(white, {kX0, kY0, kHeight}, {kX1, kY0, kHeight}, {kX1, kY1, kHeight},
+               {kX0, kY1, kHeight});
+    maker.point_light({2, 1.5, 2}, 10.0);
+    return maker.take();
+  }
+  /// Mean irradiance of a rectangle of the floor.
+  [[nodiscard]] double floor(float x0, float x1, float y0, float y1) const {
+    constexpr int kSteps = 20;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j)
+        sum += test::look(solved,
+                          {x0 + (x1 - x0) * (static_cast<float>(i) + 0.5f) / kSteps,
+                           y0 + (y1 - y0) * (static_cast<float>(j) + 0.5f) / kSteps, 0.01f},
+                          {0, 0, -1});
+    return sum / (kSteps * kSteps);
+  }
+  [[nodiscard]] double below() const { return floor(kX0, kX1, kY0, kY1); }
+  [[nodiscard]] double beside() const { return floor(kX0, kX1, kY0 - 0.3f, kY0); }
+};
+
+// Elements of half a metre that lay on both sides of its outline would take a third of the light of
+// the floor beside it below the board, where it is lost.
+TEST(Overhang, LightDoesNotLeakBelowABoard) {
+  const BoardRoom coarse(0.5), reference(0.05);
+  RecordProperty("below", std::to_string(coarse.below() / reference.beside()));
+  RecordProperty("beside", std::to_string(coarse.beside() / reference.beside()));
+  RecordProperty("reference below", std::to_string(reference.below() / reference.beside()));
+  EXPECT_LT(reference.below(), 0.1 * reference.beside());
+  EXPECT_NEAR(coarse.below(), reference.below(), 0.02 * reference.beside());
+  EXPECT_NEAR(coarse.beside(), reference.beside(), 0.05 * reference.beside());
+}
+
 }  // namespace
 }  // namespace atrium::radiosity

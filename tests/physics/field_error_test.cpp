@@ -97,6 +97,27 @@ TEST_P(FieldError, EndsThePicture) {
   EXPECT_LT(asked.samples_mean, 500.0);
 }
 
+// A caller who can have a better field wants to know before it is certain that this one is useless.
+TEST_P(FieldError, EndsThePictureEarlierAboveItsShare) {
+  const Room room;
+  double whole = 0.0, half = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    RenderOptions o = options(GetParam(), GetParam() == Indirect::Mesh ? 0.04 : 0.08, 1 << 14);
+    o.seed = seed;
+    const auto last = room.render(0.8f, o);
+    EXPECT_EQ(last.stopped_by, "radiosity");
+    whole += last.samples_mean;
+    o.field_share = 0.5;
+    const auto early = room.render(0.8f, o);
+    EXPECT_EQ(early.stopped_by, "radiosity");
+    EXPECT_GT(early.field_error_estimate, 0.5 * o.error);
+    EXPECT_LE(early.samples_mean, last.samples_mean);
+    half += early.samples_mean;
+  }
+  RecordProperty("samples", std::to_string(half / whole));
+  EXPECT_LT(half, 0.9 * whole);
+}
+
 TEST_P(FieldError, IsSmallOfAGoodField) {
   const Room room;
   const auto asked = room.render(1.0f, options(GetParam(), 0.02, 1 << 14));

@@ -55,6 +55,9 @@ struct RenderOptions {
   /// 8x8 pixels, by more samples where they lower it most; 0: not asked for. With both zero every
   /// pixel gets `samples`.
   double error = 0.0, block_error = 0.0;
+  /// The share of the error asked for that the field's own may have: a picture where it is found to
+  /// be larger stops by "radiosity". 1: only if samples cannot make up for it (95 % certain).
+  double field_share = 1.0;
   double time_limit = 0.0;  ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
   int max_specular_depth = 64;  ///< mirror and glass events of one path (paper mode)
@@ -89,7 +92,8 @@ struct RenderResult {
   double bias_estimate = 0.0;         ///< its part that sharing between pixels causes
   double field_error_estimate = 0.0;  ///< its part by the field; 0 without an error asked for
   double block_error_estimate = 0.0;  ///< after averaging 8x8 pixels
-  /// "error" (reached), "radiosity" (the field's own error is larger, with 95 % certainty),
+  double block_field_error_estimate = 0.0;  ///< its part by the field
+  /// "error" (reached), "radiosity" (the field's own error is too large, see field_share),
   /// "samples", "time limit", "interrupt"
   std::string stopped_by;
   bool complete = true;               ///< false: stopped by time or request

@@ -11,6 +11,14 @@ double RayTiming::seconds(const Counters& counters) const {
   return sum;
 }
 
+RayTiming& operator+=(RayTiming& sum, const RayTiming& more) {
+  for (std::size_t k = 0; k < sum.kind.size(); ++k) {
+    sum.kind[k].rays += more.kind[k].rays;
+    sum.kind[k].seconds += more.kind[k].seconds;
+  }
+  return sum;
+}
+
 RayTiming operator-(const RayTiming& now, const RayTiming& earlier) {
   RayTiming r = now;
   for (std::size_t k = 0; k < r.kind.size(); ++k) {

@@ -21,6 +21,7 @@ struct RayTiming {
   [[nodiscard]] double seconds(const Counters& counters) const;
 };
 
+RayTiming& operator+=(RayTiming& sum, const RayTiming& more);
 /// What was timed after an earlier moment.
 [[nodiscard]] RayTiming operator-(const RayTiming& now, const RayTiming& earlier);
 
