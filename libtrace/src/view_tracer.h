@@ -166,8 +166,11 @@ class ViewTracer {
     const std::uint64_t pieces = (tiles_.size() + kTilesAtOnce - 1) / kTilesAtOnce;
     std::vector<LightWork> work(std::min(kTilesAtOnce, tiles_.size()));
     while (const std::uint32_t most = samples_at_once(samples)) {
-      if (piece_.next == piece_.end)
-        piece_ = {0, pieces * ((most + kSamplesAtOnce - 1) / kSamplesAtOnce)};
+      const std::uint64_t left = pieces * ((most + kSamplesAtOnce - 1) / kSamplesAtOnce);
+      if (piece_.next == piece_.end) piece_ = {0, left};
+      // A damaged state may say that there is work without end.
+      if (const std::uint64_t at = piece_.next % pieces; piece_.end - piece_.next > left)
+        piece_ = {at, at + left};
       for (; piece_.next < piece_.end; ++piece_.next) {
         if (stopped()) return;
         const std::size_t first = (piece_.next % pieces) * kTilesAtOnce;

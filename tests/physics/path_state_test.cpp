@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stop_token>
 
 #include <gtest/gtest.h>
@@ -108,6 +109,24 @@ TEST(PathState, GoesOnToMoreSamplesAndRefusesWhatDoesNotFit) {
   EXPECT_THROW((void)render(query, rgb, view(scene), {}, other), std::invalid_argument);
   state.resize(state.size() / 2);
   EXPECT_THROW((void)render(query, rgb, view(scene), {}, o), Error);
+}
+
+// What is still to be drawn ends a state: four bytes for each pixel. None gets more than is asked
+// for now, whatever they say (four thousand million samples).
+TEST(PathState, DamageAsksForNoMoreSamplesThanTheOptions) {
+  const scene::Scene scene = mirror_room();
+  const scene::RayQuery query(scene, {"isa=avx2"});
+  std::vector<char> state;
+  RenderOptions o = path_options(16, 64);
+  o.error = 0.2;
+  o.save_state = [&](const std::vector<char>& s) { state = s; };
+  ASSERT_GT(render(query, material::SpectralBasis::grey(), view(scene), {}, o).rounds, 0);
+  o.save_state = nullptr;
+  std::fill(state.end() - 4, state.end(), '\xff');
+  o.state = &state;
+  const RenderResult r = render(query, material::SpectralBasis::grey(), view(scene), {}, o);
+  const scene::Image n = scene::select_channels(r.image, {"samples.N"});
+  EXPECT_EQ(n.pixels.back(), 64.0f);
 }
 
 }  // namespace
