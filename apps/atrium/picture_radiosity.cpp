@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostRefinements = 2;       // of a run
 constexpr double kMostElements = 300000;  // of a finer solution
-constexpr double kAim = 0.4;              // what the radiosity's error shall be of the one asked for
+constexpr double kAim = 0.4;  // what the radiosity's error shall be of the one asked for
 
 }  // namespace
 
@@ -57,22 +57,21 @@ void PictureRadiosity::solve() {
 }
 
 scene::SurfaceField PictureRadiosity::find_field(double time_limit) {
-  std::string why;
-  if (!uses_radiosity(command_)) {
-    why = "the method uses none";
-  } else if (!command_.solution.empty()) {
-    why = "read from " + command_.solution;
-  } else {
-    (void)radiosity_needed(loaded_.features, why);
-  }
-  if (!why.empty()) {
+  const auto skip = [&](const std::string& why) {
     session_.detail("skipped: radiosity: " + why);
     statistics_.radiosity_skipped = why;
-    if (!uses_radiosity(command_) || command_.solution.empty()) return {};
-    scene::Solution solution = scene::read_solution(command_.solution);
-    scene::check_solution(solution, *loaded_.scene, describe_lanes(loaded_, settings_),
-                          command_.solution);
-    return std::move(solution.field);
+  };
+  if (!uses_radiosity(command_)) {
+    skip("the method uses none");
+    return {};
+  }
+  if (!command_.solution.empty()) {
+    skip("read from " + command_.solution);
+    return load_solution();
+  }
+  if (std::string why; !radiosity_needed(loaded_.features, why)) {
+    skip(why);
+    return {};
   }
   RadiosityRun run = run_radiosity(session_, loaded_, settings_, time_limit);
   statistics_.counters += run.summary.counters;
@@ -80,6 +79,13 @@ scene::SurfaceField PictureRadiosity::find_field(double time_limit) {
   if (statistics_.solve) run.summary.counters += statistics_.solve->counters;
   statistics_.solve = run.summary;
   return std::move(run.field);
+}
+
+scene::SurfaceField PictureRadiosity::load_solution() const {
+  scene::Solution solution = scene::read_solution(command_.solution);
+  scene::check_solution(solution, *loaded_.scene, describe_lanes(loaded_, settings_),
+                        command_.solution);
+  return std::move(solution.field);
 }
 
 void PictureRadiosity::save() const {
@@ -102,8 +108,8 @@ void PictureRadiosity::save() const {
 
 bool PictureRadiosity::may_refine() const {
   // Frames of a walk must not depend on which of them this run makes.
-  return statistics_.solve && command_.path.empty() && settings_.error > 0.0 && settings_.max_elements > 0 &&
-         refinements_ < kMostRefinements && !session_.interrupted();
+  return statistics_.solve && command_.path.empty() && settings_.error > 0.0 &&
+         settings_.max_elements > 0 && refinements_ < kMostRefinements && !session_.interrupted();
 }
 
 bool PictureRadiosity::refine(const trace::RenderResult& picture) {

@@ -32,6 +32,7 @@ class PictureRadiosity {
   [[nodiscard]] bool may_refine() const;
   void solve();
   [[nodiscard]] scene::SurfaceField find_field(double time_limit);
+  [[nodiscard]] scene::SurfaceField load_solution() const;
   void save() const;
 
   Session& session_;

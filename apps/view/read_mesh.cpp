@@ -15,12 +15,8 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <new>
 #include <stdexcept>
-#include <string_view>
 
 #include "check_cells.h"
 #include "material/error.h"
@@ -32,34 +28,13 @@
 namespace atrium::view {
 namespace {
 
-/// VTK's readers follow a null pointer where an array of cells is damaged in a piece that has no
-/// element for arrays of points.
-/// \return  the file with an empty one for its pieces; empty if all of them begin with one, as VTK
-/// writes them.
-std::string with_point_data(const std::string& file) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
-  const std::string_view xml = std::string_view(text).substr(0, text.find("<AppendedData"));
-  std::string result;
-  std::size_t copied = 0;
-  for (std::size_t at = xml.find("<Piece"); at != xml.npos; at = xml.find("<Piece", at + 1)) {
-    const std::size_t end = xml.find('>', at);
-    if (end == xml.npos) break;
-    const std::size_t next = std::min(xml.find_first_not_of(kBlank, end + 1), xml.size());
-    if (xml[end - 1] == '/' || xml.substr(next).starts_with("<PointData")) continue;
-    result.append(text, copied, end + 1 - copied).append("<PointData></PointData>");
-    copied = end + 1;
-  }
-  return copied > 0 ? result.append(text, copied) : result;
-}
-
 /// VTK answers damage with an error, with a short array, or with nothing at all: asked for all.
+/// \param text  to be read instead of the file, as scene::check_mesh_file() has it.
 template <class Reader>
-auto read_with(const std::string& file) {
+auto read_with(const std::string& file, const std::string& text) {
   VtkErrors errors;
   vtkNew<Reader> reader;
-  if (const std::string text = with_point_data(file); text.empty()) {
+  if (text.empty()) {
     reader->SetFileName(file.c_str());
   } else {
     reader->ReadFromInputStringOn();
@@ -155,14 +130,15 @@ void add_field_data(vtkFieldData& data, scene::PolygonMesh& mesh) {
 }
 
 vtkSmartPointer<vtkPolyData> read_polygons(const std::string& file, const std::string& ending,
+                                           const std::string& text,
                                            vtkSmartPointer<vtkFieldData>& texts) {
   if (ending == ".vtp") {
-    const auto data = read_with<vtkXMLPolyDataReader>(file);
+    const auto data = read_with<vtkXMLPolyDataReader>(file, text);
     texts = data->GetFieldData();
     check_cells(*data, file);
     return polygons_only(data);
   }
-  const auto grid = read_with<vtkXMLUnstructuredGridReader>(file);
+  const auto grid = read_with<vtkXMLUnstructuredGridReader>(file, text);
   texts = grid->GetFieldData();
   check_cells(*grid, file);
   return surface_of(grid);
@@ -179,9 +155,9 @@ Mesh read_mesh(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (!std::filesystem::is_regular_file(path)) throw Error(file + ": cannot be read: no such file");
   if (!is_mesh_file(path)) throw Error(file + ": unknown mesh format (known: .vtp .vtu)");
-  scene::check_mesh_file(path);
+  const std::string text = scene::check_mesh_file(path);
   vtkSmartPointer<vtkFieldData> texts;
-  const auto data = read_polygons(file, scene::file_ending(path), texts);
+  const auto data = read_polygons(file, scene::file_ending(path), text, texts);
   scene::PolygonMesh polygons;
   add_geometry(*data, polygons);
   polygons.cell_arrays = arrays_of(*data->GetCellData());

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "material/material.h"
+#include "open_edges.h"
 #include "polygon.h"
 #include "triangle_tree.h"
 
@@ -47,12 +47,6 @@ std::pair<double, double> inside(const Corners& c, const Vec3d& n, const Vec3d& 
 }
 
 }  // namespace
-
-EdgeKey edge_key(const Vec3f& a, const Vec3f& b) {
-  const EdgeKey k{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
-  const EdgeKey turned{b.x(), b.y(), b.z(), a.x(), a.y(), a.z()};
-  return std::min(k, turned);
-}
 
 std::optional<Barrier> within_triangle(const std::array<Vec3f, 3>& triangle,
                                        const Barrier& barrier) {
@@ -133,8 +127,7 @@ std::vector<Barrier> BarrierFinder::outlines_above(scene::ObjectId object, std::
   const auto height = [&](const Vec3d& p) { return (p - c[0]).dot(n); };
   Box box;
   for (const Vec3d& p : c) box.extend(p.cast<float>()).extend((p + reach * n).cast<float>());
-  // Edges that two of an object's triangles share are no end of it.
-  std::map<std::pair<std::uint32_t, EdgeKey>, int> uses;
+  OpenEdges edges;
   for (const std::uint32_t i : impl_->triangles.meeting(box)) {
     const TriangleTree::Item& item = impl_->triangles.item(i);
     const std::array<Vec3f, 3> other = impl_->scene.corners(item.object, item.triangle);
@@ -143,23 +136,16 @@ std::vector<Barrier> BarrierFinder::outlines_above(scene::ObjectId object, std::
     const bool above = std::all_of(u.begin(), u.end(), [&](const Vec3d& p) {
       return height(p) > 1e-3 * reach && height(p) < reach;
     });
-    if (!above) continue;
-    for (std::size_t k = 0; k < 3; ++k)
-      ++uses[{item.object.value, edge_key(other[k], other[(k + 1) % 3])}];
+    if (above) edges.add(item.object, other);
   }
-  const auto ends = [](const EdgeKey& e) {
-    return std::pair(Vec3d(e[0], e[1], e[2]), Vec3d(e[3], e[4], e[5]));
-  };
+  const std::vector<OpenEdges::Edge> open = edges.list();
   std::set<std::uint32_t> large;
-  for (const auto& [key, count] : uses) {
-    const auto [a, b] = ends(key.second);
-    if (count == 1 && (b - a).norm() > length) large.insert(key.first);
-  }
+  for (const OpenEdges::Edge& e : open)
+    if ((e.b - e.a).norm() > length) large.insert(e.object.value);
   std::vector<Barrier> outlines;
-  for (const auto& [key, count] : uses) {
-    if (count != 1 || !large.contains(key.first)) continue;
-    const auto [a, b] = ends(key.second);
-    const Barrier edge{a - height(a) * n, b - height(b) * n, false};
+  for (const OpenEdges::Edge& e : open) {
+    if (!large.contains(e.object.value)) continue;
+    const Barrier edge{e.a - height(e.a) * n, e.b - height(e.b) * n, false};
     if (const auto part = within_triangle(corners, edge)) outlines.push_back(*part);
   }
   return outlines;

@@ -17,16 +17,12 @@ struct Barrier {
   bool wall = true;  ///< false: nothing stands there, but elements end
 };
 
-/// An edge as a key, the same in both directions.
-using EdgeKey = std::array<float, 6>;
-[[nodiscard]] EdgeKey edge_key(const Vec3f& a, const Vec3f& b);
-
 /// The part of a barrier within a triangle in whose plane it lies, if it is more than a point.
 [[nodiscard]] std::optional<Barrier> within_triangle(const std::array<Vec3f, 3>& triangle,
                                                      const Barrier& barrier);
 
-/// Finds where the surfaces of a scene that let no light pass straight meet its triangles or all but
-/// touch them.
+/// Finds where the surfaces of a scene that let no light pass straight meet its triangles or all
+/// but touch them.
 class BarrierFinder {
  public:
   explicit BarrierFinder(const scene::Scene& scene);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "material/material.h"
+#include "open_edges.h"
 #include "triangle_tree.h"
 
 namespace atrium::radiosity {
@@ -65,8 +65,7 @@ std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t t
   box.max().array() += 2.0f * point.error;
   const Vec3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
   if (!n.allFinite()) return {};
-  // Edges that two triangles of a cover share are no end of it.
-  std::map<std::pair<std::uint32_t, EdgeKey>, int> uses;
+  OpenEdges edges;
   for (const std::uint32_t i : impl_->triangles.meeting(box)) {
     const TriangleTree::Item& item = impl_->triangles.item(i);
     if (item.object.value >= object.value) continue;
@@ -74,17 +73,11 @@ std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t t
     const bool in_plane = std::all_of(other.begin(), other.end(), [&](const Vec3f& p) {
       return std::abs((p.cast<double>() - c[0]).dot(n)) <= reach;
     });
-    if (!in_plane) continue;
-    for (std::size_t k = 0; k < 3; ++k)
-      ++uses[{item.object.value, edge_key(other[k], other[(k + 1) % 3])}];
+    if (in_plane) edges.add(item.object, other);
   }
   std::vector<Barrier> outlines;
-  for (const auto& [key, count] : uses) {
-    if (count != 1) continue;
-    const auto& e = key.second;
-    const Barrier edge{Vec3d(e[0], e[1], e[2]), Vec3d(e[3], e[4], e[5]), false};
-    if (const auto part = within_triangle(corners, edge)) outlines.push_back(*part);
-  }
+  for (const OpenEdges::Edge& e : edges.list())
+    if (const auto part = within_triangle(corners, {e.a, e.b, false})) outlines.push_back(*part);
   return outlines;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "open_edges.h"
 #include "polygon.h"
 
 namespace atrium::radiosity {
@@ -23,8 +24,8 @@ constexpr double kWallLength = 2.0;  // cells; longer barriers part what is besi
 constexpr double kFreeLength = 0.5;  // cells; longer barriers that end free part what is near them
 constexpr std::size_t kMostFree = 64;   // of one facet; more stay as they are
 constexpr double kOutlineLength = 0.1;  // cells; shorter pieces of covers' outlines cut nothing
-constexpr double kHang = 0.75;       // cells; what hangs lower keeps light from what is below
-constexpr double kHangLength = 1.0;  // cells; the longest edge of what hangs, at least
+constexpr double kHang = 0.75;          // cells; what hangs lower keeps light from what is below
+constexpr double kHangLength = 1.0;     // cells; the longest edge of what hangs, at least
 constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
 
 /// A corner, and which line the edge to the next one lies on.

@@ -135,8 +135,8 @@ struct BoardRoom {
   [[nodiscard]] double beside() const { return floor(kX0, kX1, kY0 - 0.3f, kY0); }
 };
 
-// Elements of half a metre that lay on both sides of its outline would take a third of the light of
-// the floor beside it below the board, where it is lost.
+// With elements of half a metre on both sides of its outline the floor below the board would have
+// 51 % of the light beside it, which is lost there.
 TEST(Overhang, LightDoesNotLeakBelowABoard) {
   const BoardRoom coarse(0.5), reference(0.05);
   RecordProperty("below", std::to_string(coarse.below() / reference.beside()));

@@ -96,7 +96,7 @@ struct RenderResult {
   /// "error" (reached), "radiosity" (the field's own error is too large, see field_share),
   /// "samples", "time limit", "interrupt"
   std::string stopped_by;
-  bool complete = true;               ///< false: stopped by time or request
+  bool complete = true;  ///< false: stopped by time or request
 };
 
 /// Renders one view. Deterministic for a scene, options and seed at any thread count (time limits

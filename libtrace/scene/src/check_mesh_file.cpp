@@ -63,9 +63,27 @@ std::string what_is_unknown(std::string_view text) {
   return {};
 }
 
+/// The text with an empty element for arrays of points in the pieces that do not begin with one, as
+/// VTK writes them; empty if all do.
+std::string with_point_data(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::string_view xml = text.substr(0, text.find("<AppendedData"));
+  std::string result;
+  std::size_t copied = 0;
+  for (std::size_t at = xml.find("<Piece"); at != xml.npos; at = xml.find("<Piece", at + 1)) {
+    const std::size_t end = xml.find('>', at);
+    if (end == xml.npos) break;
+    const std::size_t next = std::min(xml.find_first_not_of(kBlank, end + 1), xml.size());
+    if (xml[end - 1] == '/' || xml.substr(next).starts_with("<PointData")) continue;
+    result.append(text, copied, end + 1 - copied).append("<PointData></PointData>");
+    copied = end + 1;
+  }
+  return copied > 0 ? result.append(text, copied) : result;
+}
+
 }  // namespace
 
-void check_mesh_file(const std::filesystem::path& file) {
+std::string check_mesh_file(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(file, limits::kMeshFileBytes);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (const std::string unknown = what_is_unknown(text); !unknown.empty())
@@ -80,6 +98,7 @@ void check_mesh_file(const std::filesystem::path& file) {
                   " points, cells or values, more than its " + std::to_string(bytes.size()) +
                   " bytes can hold");
   }
+  return with_point_data(text);
 }
 
 }  // namespace atrium::scene

@@ -51,7 +51,10 @@ void write_polygon_mesh(const PolygonMesh& mesh, const std::filesystem::path& fi
 /// points, cells and values that its XML names are compared with its size, and elements and types
 /// with those that there are. \throws Error "FILE: ..."  if it is missing, has others or announces
 /// more than it can hold.
-void check_mesh_file(const std::filesystem::path& file);
+/// \return  text to read instead of the file, or empty. Where an array of cells is damaged and its
+/// piece has no element for arrays of points, VTK's readers follow a null pointer for the message
+/// (if messages are shown at all): such pieces get an empty one.
+std::string check_mesh_file(const std::filesystem::path& file);
 
 /// What a mesh file holds.
 struct MeshFileSummary {
