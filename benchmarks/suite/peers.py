@@ -1,4 +1,5 @@
-"""The programs that render the scenes of peer_scenes: is one there, which version, and a picture by it."""
+"""The programs that render the scenes of peer_scenes: is one there, which version, what its materials can say, and a
+picture by it."""
 
 import importlib.util
 import os
@@ -28,11 +29,13 @@ def newest_llvm():
 class Atrium:
     """By radiosity to an asked error, or by path tracing with fixed samples, as other programs have."""
 
+    ending, write = ".yaml", staticmethod(peer_scenes.atrium)
+    knows = {peer_scenes.Diffuse, peer_scenes.Metal, peer_scenes.Glass}
+
     def __init__(self, context, method):
         self.program, self.method, self.name = context.atrium, method, f"Atrium, {method}"
         self.budgets = [0.2, 0.1, 0.05, 0.02] if method == "hybrid" else [4, 16, 64, 256, 1024]
         self.unit = "error asked" if method == "hybrid" else "samples"
-        self.ending, self.write = ".yaml", peer_scenes.atrium
 
     def missing(self):
         return ""
@@ -62,10 +65,12 @@ class Atrium:
 
 
 class Mitsuba:
+    ending, write = ".xml", staticmethod(peer_scenes.mitsuba)
+    knows = {peer_scenes.Diffuse, peer_scenes.Metal, peer_scenes.Glass}
+
     def __init__(self, variant):
         self.variant, self.name = variant, f"Mitsuba 3, {variant}"
         self.budgets, self.unit = [4, 16, 64, 256, 1024], "samples"
-        self.ending, self.write = ".xml", peer_scenes.mitsuba
 
     def missing(self):
         if importlib.util.find_spec("mitsuba") is None:
@@ -102,9 +107,8 @@ class PovRay:
 
     name, ending, unit = "POV-Ray, radiosity", ".pov", "count"
     budgets = [50, 200, 800]
-
-    def __init__(self):
-        self.write = peer_scenes.pov
+    write = staticmethod(peer_scenes.pov)
+    knows = {peer_scenes.Diffuse, peer_scenes.Glass}
 
     def missing(self):
         return "" if shutil.which("povray") else "no program povray"
@@ -141,9 +145,8 @@ class Radiance:
 
     name, ending, unit = "Radiance, rpict", ".rad", "-ad"
     budgets = [256, 1024, 4096]
-
-    def __init__(self):
-        self.write = peer_scenes.radiance
+    write = staticmethod(peer_scenes.radiance)
+    knows = {peer_scenes.Diffuse}
 
     def missing(self):
         return "" if shutil.which("rpict") and shutil.which("oconv") else "no programs rpict and oconv"

@@ -5,7 +5,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "benchmarks"))
-from suite import meshes, peer_scenes, program  # noqa: E402  (the path comes first)
+from suite import meshes, peer_scenes, peers, program  # noqa: E402  (the path comes first)
 from suite.sections import radiosity  # noqa: E402
 
 
@@ -29,6 +29,22 @@ class PeerScenes(unittest.TestCase):
         sides = peer_scenes.block((0, 0, 0), (2, 3, 4), peer_scenes.WHITE, 30)
         area = sum(dot(n, n) ** 0.5 for n in (peer_scenes.cross(q.u, q.v) for q in sides))
         self.assertAlmostEqual(area, 2 * (6 + 8 + 12))
+
+    def test_glass_stands_free_and_looks_outwards(self):
+        body = [q for q in peer_scenes.glass().quads if isinstance(q.surface, peer_scenes.Glass)]
+        self.assertEqual(len(body), 6)
+        self.assertGreater(min(p[1] for q in body for p in peer_scenes.corners(q)), 0.01)
+        middle = peer_scenes.scaled([sum(p[i] for q in body for p in peer_scenes.corners(q)) for i in range(3)], 1 / 24)
+        for quad in body:
+            self.assertLess(self.side(quad, middle), 0)
+
+    def test_each_program_has_words_for_the_materials_it_knows(self):
+        words = {peer_scenes.Metal: (peer_scenes.gloss, "ggx"), peer_scenes.Glass: (peer_scenes.glass, "ior")}
+        for peer in (peers.Atrium, peers.Mitsuba, peers.PovRay):
+            write = peer.write
+            for surface in peer.knows & words.keys():
+                make, word = words[surface]
+                self.assertIn(word, write(make(), peers.SIZE))
 
     def test_lamps_shine_down_in_the_box_and_up_in_the_cove(self):
         for make, up in ((peer_scenes.box, -1), (peer_scenes.cove, 1)):
