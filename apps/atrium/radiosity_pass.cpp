@@ -37,13 +37,20 @@ std::string describe(const SolveSettings& s) {
 
 namespace {
 
+/// A matrix grows with the square of the elements, and has at most 3000 of their sides.
+std::uint32_t elements_of_matrix(const Effort& effort) {
+  return std::min<std::uint32_t>(effort.max_elements / 30, 1300);
+}
+
 radiosity::SolveOptions solve_options(const SolveSettings& settings, double time_limit) {
   const Effort effort = effort_of(settings.quality);
   radiosity::SolveOptions o;
   o.solver = settings.solver == SolverChoice::Rows       ? radiosity::Solver::Rows
              : settings.solver == SolverChoice::Shooting ? radiosity::Solver::Shooting
                                                          : radiosity::Solver::Matrix;
-  o.max_elements = settings.max_elements > 0 ? settings.max_elements : effort.max_elements;
+  o.max_elements = settings.max_elements > 0                 ? settings.max_elements
+                   : settings.solver == SolverChoice::Matrix ? elements_of_matrix(effort)
+                                                             : effort.max_elements;
   o.row_rays = effort.row_rays;
   o.gather_rays = effort.gather_rays;
   o.direct_samples = effort.direct_samples;

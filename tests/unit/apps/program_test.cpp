@@ -239,6 +239,9 @@ cameras: [{name: eye, perspective: {eye: [0, 0, 1.5], target: [0, 0, 0]}}]
                "go on from");
   expect_error(run(folder, "solve s.yaml --solver matrix --light-groups -o u.atrium" + rest), 2,
                "light groups");
+  // Few enough elements for a matrix, of any room.
+  const Result matrix = run(folder, "solve s.yaml --solver matrix -o u.atrium" + rest);
+  EXPECT_EQ(matrix.code, 0) << matrix.err;
 }
 
 /// The text of one member of a JSON object at the top, with everything in it.
