@@ -1,4 +1,4 @@
-"""Counted work of a dozen small runs against a baseline: `run.py --quick`. No number is a time."""
+"""Counted work of small runs against a baseline: `run.py --quick`. No number is a time."""
 
 import json
 import pathlib
@@ -23,6 +23,8 @@ CASES = {
     "solve a floor": ("solve benchmark/office_floor --quality draft", "a.atrium"),
     "solve to an error": ("solve benchmark/furnished_room --error 0.1", "a.atrium"),
     "mirrors": ("solve benchmark/mirror_atrium --error 0.1", "a.atrium"),
+    "by shooting": ("solve cornell/cornell --quality draft --solver shooting --memory-limit 1", "a.atrium"),
+    "by a matrix": ("solve benchmark/small_room --quality draft --solver matrix", "a.atrium"),
     "sensors": ("measure benchmark/small_room --workplane 0.85 --spacing 0.5 --quality draft", "a.csv"),
 }
 
