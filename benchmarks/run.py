@@ -51,7 +51,7 @@ def parse():
     known = ",".join(SECTIONS)
     parser.add_argument("--only", metavar="NAME,...", default=known, help=f"sections to run (default: {known})")
     parser.add_argument("--compose", action="store_true", help="write the page from kept results")
-    parser.add_argument("--thorough", action="store_true", help="more budgets, larger scenes, longer references")
+    parser.add_argument("--thorough", action="store_true", help="smaller errors, longer sweeps, more repetitions")
     parser.add_argument("--quick", action="store_true", help="compare counted work with the baseline")
     parser.add_argument("--renew", action="store_true", help="with --quick: write the baseline")
     path = pathlib.Path

@@ -31,9 +31,10 @@ def where(found):
         if found["other_work"] >= 0.02
         else "nothing else ran"
     )
+    thorough = "; --thorough" if found["thorough"] else ""
     return wrapped(
         f"*{m['cpu']}, {m['cores']} cores, {m['memory_gb']} GB; {m['compiler']}; commit {m['commit']}, {m['date']}; "
-        f"{found['seconds'] / 60:.1f} minutes, {other}.*"
+        f"{found['seconds'] / 60:.1f} minutes, {other}{thorough}.*"
     )
 
 
