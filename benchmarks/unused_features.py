@@ -5,6 +5,13 @@ resident size, median of ten runs) with the feature enabled against the same run
     cmake --preset release && cmake --build build/release --target atrium
     benchmarks/unused_features.py build/release/bin/atrium > table.md
 
+With the program of a build that leaves something out, a row of what its presence costs (ATRIUM_WITH_OPENMESH
+is none: it mends meshes, which every scene uses):
+
+    cmake --preset release -B build/without -DATRIUM_WITH_OPENSUBDIV=OFF -DATRIUM_BUILD_TESTS=OFF
+    cmake --build build/without --target atrium
+    benchmarks/unused_features.py build/release/bin/atrium --without build/without/bin/atrium
+
 Also start-up: processor time of the process before a scene is read, over 50 runs. Instructions do
 not depend on what else runs on the machine.
 """
@@ -121,9 +128,31 @@ def start_up(atrium, folder):
         print(f"| {name} | {cpu_ms(command):.1f} | {instructions(command, folder) / 1e6:.1f} |")
 
 
+def left_out(atrium, other):
+    """Options of CMake that are on in the build of one program and off in that of the other."""
+    on, off = (set(re.findall(rf"^ATRIUM_WITH_(\w+):BOOL={value}$",
+                              (pathlib.Path(program).parents[1] / "CMakeCache.txt").read_text(), re.M))
+               for program, value in ((atrium, "ON"), (other, "OFF")))
+    return ", ".join(sorted(on & off))
+
+
+def row(name, with_it, without):
+    """Prints it; whether instructions or memory differ by 2 % or more."""
+    difference = [100 * (a / b - 1) for a, b in zip(with_it, without)]
+    print(f"| {name} | {with_it[0] / 1e6:.1f} | {without[0] / 1e6:.1f} | {difference[0]:+.2f} % | "
+          f"{with_it[1]:.1f} | {without[1]:.1f} | {difference[1]:+.2f} % |", flush=True)
+    return max(difference) >= 2.0
+
+
+def resolved(path):
+    return str(pathlib.Path(path).resolve())
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("atrium", type=lambda p: str(pathlib.Path(p).resolve()))
+    parser.add_argument("atrium", type=resolved)
+    parser.add_argument("--without", type=resolved, default=[], action="append", metavar="PROGRAM",
+                        help="of a build with fewer features (repeatable)")
     parser.add_argument("--only", default="", metavar="TEXT", help="features with TEXT in their name")
     arguments = parser.parse_args()
     failed = False
@@ -135,12 +164,12 @@ def main():
         for name, template, scene, options, plain, off in FEATURES:
             if arguments.only not in name:
                 continue
-            with_it = measure(arguments.atrium, folder, template, room(scene), options)
-            without = measure(arguments.atrium, folder, template, room(plain), off)
-            difference = [100 * (a / b - 1) for a, b in zip(with_it, without)]
-            failed |= max(difference) >= 2.0
-            print(f"| {name} | {with_it[0] / 1e6:.1f} | {without[0] / 1e6:.1f} | {difference[0]:+.2f} % | "
-                  f"{with_it[1]:.1f} | {without[1]:.1f} | {difference[1]:+.2f} % |", flush=True)
+            failed |= row(name, measure(arguments.atrium, folder, template, room(scene), options),
+                          measure(arguments.atrium, folder, template, room(plain), off))
+        for other in arguments.without:
+            for method, template in (("direct", DIRECT), ("hybrid", HYBRID), ("path", PATH)):
+                failed |= row(f"{method}: {left_out(arguments.atrium, other)} in the build",
+                              *(measure(p, folder, template, room({}), "") for p in (arguments.atrium, other)))
     return 1 if failed else 0
 
 
