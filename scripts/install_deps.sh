@@ -14,7 +14,7 @@ build="g++ cmake ninja-build ccache pkg-config
   libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libtinygltf-dev libtinyobjloader-dev
   zlib1g-dev"
 web="nodejs npm"
-test="libgtest-dev xvfb xauth chromium python3"
+test="libgtest-dev libbenchmark-dev xvfb xauth chromium python3"
 bench="libbenchmark-dev python3 python3-matplotlib"
 fuzz="clang libclang-rt-14-dev libgtest-dev"
 tidy="clang clang-tidy libgtest-dev"

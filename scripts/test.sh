@@ -1,11 +1,11 @@
 #!/bin/sh
-# Installs what the tests need, builds everything and runs all tests, then the
+# Installs what the tests need, builds everything, benchmark programs too, and runs all tests, then the
 # readers' tests again under GCC's sanitizers. The exit code is that of the first step that fails.
 set -eu
 cd "$(dirname "$0")/.."
 
 scripts/install_deps.sh build web test
-cmake --preset release >/dev/null
+cmake --preset release -DATRIUM_BUILD_BENCHMARKS=ON >/dev/null
 cmake --build --preset release
 ctest --test-dir build/release -j2 --output-on-failure
 
