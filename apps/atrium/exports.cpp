@@ -31,7 +31,8 @@ bool is_page(const std::string& file) { return scene::file_ending(file) == ".htm
 constexpr bool kWeb = true;
 #else
 constexpr bool kWeb = false;
-std::vector<std::uint8_t> web_page(const std::vector<std::uint8_t>&, const std::string&) {
+[[maybe_unused]] std::vector<std::uint8_t> web_page(const std::vector<std::uint8_t>&,
+                                                    const std::string&) {
   return {};  // check_export() has refused it
 }
 #endif

@@ -1,7 +1,5 @@
 #include "sensor_file.h"
 
-#ifdef ATRIUM_WITH_RADIOSITY
-
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -63,5 +61,3 @@ std::vector<radiosity::Sensor> read_sensors(const std::string& file) {
 }
 
 }  // namespace atrium::app
-
-#endif

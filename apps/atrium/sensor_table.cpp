@@ -1,7 +1,5 @@
 #include "sensor_table.h"
 
-#ifdef ATRIUM_WITH_RADIOSITY
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -133,5 +131,3 @@ std::string sensor_json(std::span<const Sensor> sensors, std::span<const Reading
 }
 
 }  // namespace atrium::app
-
-#endif

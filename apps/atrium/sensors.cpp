@@ -1,7 +1,5 @@
 #include "sensors.h"
 
-#ifdef ATRIUM_WITH_RADIOSITY
-
 #include <cmath>
 
 #include "material/error.h"
@@ -57,5 +55,3 @@ std::vector<radiosity::Sensor> work_plane_sensors(const LoadedScene& loaded, dou
 }
 
 }  // namespace atrium::app
-
-#endif

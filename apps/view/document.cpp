@@ -4,11 +4,11 @@
 
 #include "loaded_scene.h"
 #include "material/error.h"
-#include "radiosity/export_mesh.h"
 #include "scene/output_file.h"
 #include "scene/solution_io.h"
 
 #ifdef ATRIUM_WITH_RADIOSITY
+#include "radiosity/export_mesh.h"
 #include "solved_mesh.h"
 #endif
 

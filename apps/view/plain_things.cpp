@@ -10,9 +10,17 @@
 #endif
 
 namespace atrium::view {
-namespace {
 
 using scene::BakedModel;
+
+bool PlainThings::is_glass(std::size_t thing) const {
+  return model.materials[model.primitives[thing].material].kind ==
+         BakedModel::Material::Kind::Glass;
+}
+
+#ifdef ATRIUM_WITH_RADIOSITY
+
+namespace {
 
 /// By object; empty: the mesh is of another scene, or does not say.
 std::vector<std::uint8_t> objects_in(const Mesh& mesh, const scene::Scene& scene) {
@@ -45,13 +53,6 @@ Mesh shapes_of(const BakedModel& model, std::size_t things) {
 }
 
 }  // namespace
-
-bool PlainThings::is_glass(std::size_t thing) const {
-  return model.materials[model.primitives[thing].material].kind ==
-         BakedModel::Material::Kind::Glass;
-}
-
-#ifdef ATRIUM_WITH_RADIOSITY
 
 PlainThings plain_things(const LoadedScene& loaded, const Mesh& mesh,
                          std::span<const scene::GroupField> groups) {

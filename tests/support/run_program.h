@@ -41,7 +41,7 @@ inline Result run_command(const TempFolder& folder, const std::string& command) 
   return r;
 }
 inline Result run(const TempFolder& folder, const std::string& arguments) {
-  return run_command(folder, std::string(ATRIUM_PROGRAM) + " " + arguments);
+  return run_command(folder, ATRIUM_PROGRAM " " + arguments);
 }
 
 /// Exactly one line, "atrium: error: ..." with the fragment in it.

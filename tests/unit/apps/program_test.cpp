@@ -96,20 +96,27 @@ TEST(AtriumProgram, ContradictionsAreErrorsThatNameTheOption) {
 
 TEST(AtriumProgram, BadInputAndBadOutputNameTheFile) {
   const TempFolder folder;
+#ifdef ATRIUM_WITH_RADIOSITY
+  const std::string render = "render ";
+#else
+  const std::string render = "render --method path ";  // the other one is refused before any file
+#endif
   folder.write("a.obj", kFloor);
   folder.write("empty.obj", "# nothing\n");
   folder.write("broken.glb", "glTF, not really");
   folder.write("a.xyz", "1 2 3");
-  expect_error(run(folder, "render missing.glb -o a.exr"), 2, "missing.glb");
-  expect_error(run(folder, "render a.xyz -o a.exr"), 2, "a.xyz");
-  expect_error(run(folder, "render broken.glb -o a.exr"), 2, "broken.glb");
-  expect_error(run(folder, "render empty.obj -o a.exr"), 2, "empty.obj");
-  expect_error(run(folder, "render a.obj -o a.gif"), 2, "a.gif");
-  expect_error(run(folder, "render a.obj -o none/a.exr"), 2, "none/a.exr");
-  expect_error(run(folder, "render a.obj -o a.exr --stats none/s.json"), 2, "none/s.json");
-  expect_error(run(folder, "render a.obj -o a.exr --camera main"), 2, "--camera main");
-  expect_error(run(folder, "render a.obj -o a.exr --save-solution s.bin"), 2, "s.bin");
+  expect_error(run(folder, render + "missing.glb -o a.exr"), 2, "missing.glb");
+  expect_error(run(folder, render + "a.xyz -o a.exr"), 2, "a.xyz");
+  expect_error(run(folder, render + "broken.glb -o a.exr"), 2, "broken.glb");
+  expect_error(run(folder, render + "empty.obj -o a.exr"), 2, "empty.obj");
+  expect_error(run(folder, render + "a.obj -o a.gif"), 2, "a.gif");
+  expect_error(run(folder, render + "a.obj -o none/a.exr"), 2, "none/a.exr");
+  expect_error(run(folder, render + "a.obj -o a.exr --stats none/s.json"), 2, "none/s.json");
+  expect_error(run(folder, render + "a.obj -o a.exr --camera main"), 2, "--camera main");
+#ifdef ATRIUM_WITH_RADIOSITY
+  expect_error(run(folder, render + "a.obj -o a.exr --save-solution s.bin"), 2, "s.bin");
   expect_error(run(folder, "solve a.obj -o a.stl"), 2, "a.stl");
+#endif
   expect_error(run(folder, "info missing.exr"), 2, "missing.exr");
   expect_error(run(folder, "compare missing.pfm a.pfm"), 2, "missing.pfm");
   EXPECT_EQ(folder.file_count(), 4);
@@ -208,6 +215,7 @@ TEST_F(AtriumRun, QuietIsSilentAndThreadsDoNotChangeTheImage) {
   EXPECT_EQ(read_file(folder / "1.pfm"), read_file(folder / "2.pfm"));
 }
 
+#ifdef ATRIUM_WITH_RADIOSITY
 TEST_F(AtriumRun, LightGroupsAreDimmedAndSolvesGoOn) {
   folder.write("s.yaml", R"(atrium: 1
 materials: {white: {body: 0.5}}
@@ -387,6 +395,18 @@ TEST_F(AtriumRun, SolutionsAreReusedAndCheckedAgainstTheScene) {
   expect_error(run(folder, "render a.obj -o c.pfm --solution cut.atrium" + small), 2, "cut.atrium");
   EXPECT_FALSE(std::filesystem::exists(folder / "c.pfm"));
 }
+
+#else
+// Pictures by the other methods are in the tests around this one.
+TEST_F(AtriumRun, WithoutRadiosityThatIsSaid) {
+  const std::string missing = "radiosity is not part of this build";
+  expect_error(run(folder, "render a.obj -o a.pfm --quiet"), 1, missing);
+  expect_error(run(folder, "solve a.obj -o a.atrium --quiet"), 1, missing);
+  expect_error(run(folder, "measure a.obj --workplane 1 --quiet"), 1, missing);
+  expect_error(run(folder, "export a.obj --solution a.atrium -o a.vtp"), 1, missing);
+  EXPECT_EQ(folder.file_count(), 2);
+}
+#endif
 
 TEST_F(AtriumRun, InfoListsDecisions) {
   const Result r = run(folder, "info a.obj");

@@ -155,6 +155,7 @@ TEST_F(ViewRun, NansAreGreyAndDoNotTouchTheRange) {
       0);
 }
 
+#ifdef ATRIUM_WITH_RADIOSITY
 // Solves, and reads a solution with its scene: the same picture.
 TEST_F(ViewRun, ScenesAreSolvedAndSolutionsRead) {
   ATRIUM_NEEDS_DISPLAY();
@@ -187,6 +188,13 @@ TEST_F(ViewRun, ScenesAreSolvedAndSolutionsRead) {
   EXPECT_NEAR(mean("--weights lamp=0 --weights bulb=0"), 0.0, 1e-6);
   expect_view_error(view(folder, "lit.atrium --screenshot x.png"), 2, "together with its scene");
 }
+#else
+TEST_F(ViewRun, WithoutRadiosityThatIsSaid) {
+  folder.write("lit.yaml", kLitFloor);
+  expect_view_error(view(folder, "lit.yaml --statistics object=floor --quiet"), 1,
+                    "radiosity is not part of this build");
+}
+#endif
 
 TEST_F(ViewRun, MeasuresFrames) {
   ATRIUM_NEEDS_DISPLAY();
