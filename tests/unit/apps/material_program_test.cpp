@@ -120,8 +120,12 @@ TEST(AtriumMaterial, ListAndShow) {
   // F(90 deg) = 1; the colour differs from 1 by the rounding of the white point's chromaticity.
   EXPECT_NE(show.out.find("\n90         1.00000"), std::string::npos) << show.out;
   EXPECT_NE(run(folder, "material show AU --json").out.find("\"F0_A\""), std::string::npos);
+#ifdef ATRIUM_WITH_VTK
   EXPECT_EQ(run(folder, "material show gold -o gold.svg").code, 0);
   EXPECT_NE(read_file(folder / "gold.svg").find("vacuum wavelength"), std::string::npos);
+#else
+  expect_error(run(folder, "material show gold -o gold.svg"), 1, "without VTK");
+#endif
   expect_error(run(folder, "material show gold -o gold.gif"), 2, "gold.gif");
   expect_error(run(folder, "material show golt"), 2, "did you mean gold?");
   expect_error(run(folder, "material show"), 2, "name");

@@ -303,7 +303,7 @@ objects:
 cameras:
   - {name: front, perspective: {eye: [0, 1, 3], target: [0, 0.7, 0], yfov: 50}}
 )");
-  const std::string render = "render seen.yaml -o a.exr --size 24x18 --stats s.json ";
+  const std::string render = "render seen.yaml -o a.pfm --size 24x18 --stats s.json ";
   const Result r = run(folder, render + "--error 0.125 --verbose");
   EXPECT_EQ(r.code, 0) << r.err;
   EXPECT_NE(r.err.find("error asked for: radiosity to 10 %"), none) << r.err;
@@ -403,7 +403,7 @@ TEST_F(AtriumRun, WithoutRadiosityThatIsSaid) {
   expect_error(run(folder, "render a.obj -o a.pfm --quiet"), 1, missing);
   expect_error(run(folder, "solve a.obj -o a.atrium --quiet"), 1, missing);
   expect_error(run(folder, "measure a.obj --workplane 1 --quiet"), 1, missing);
-  expect_error(run(folder, "export a.obj --solution a.atrium -o a.vtp"), 1, missing);
+  expect_error(run(folder, "export a.obj --solution a.atrium -o a.glb"), 1, missing);
   EXPECT_EQ(folder.file_count(), 2);
 }
 #endif
