@@ -32,6 +32,11 @@ double least_elements(const scene::Scene& scene) {
   return std::clamp(area / (0.13 * 0.13), 3000.0, 60000.0);
 }
 
+/// Those are read from the mesh where they are seen.
+bool has_caustics(const scene::Features& features) {
+  return features.mirrors || features.rough || features.solids;
+}
+
 std::string percent(double share) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
@@ -49,12 +54,18 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
     const Effort effort = effort_of(c.solve.quality);
     plan.spread = c.samples == 0 && c.method != trace::Method::Path;
     plan.samples = c.samples > 0 ? c.samples : plan.spread ? effort.mean_samples : effort.samples;
+    // A first look at a small room need not wait for a mesh that is read behind a bounce.
+    if (c.solve.quality == Quality::Draft && c.solve.solver == SolverChoice::Rows &&
+        plan.indirect == trace::Indirect::Gather && !has_caustics(features) &&
+        c.save_solution.empty())
+      c.solve.max_elements =
+          static_cast<std::uint32_t>(std::min<double>(effort.max_elements, least_elements(scene)));
     return plan;
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;
   char text[256];
   if (c.method == trace::Method::Hybrid && c.solution.empty()) {
-    const bool caustics = features.mirrors || features.rough || features.solids;
+    const bool caustics = has_caustics(features);
     const double certain = caustics ? error : 2.0 * error;
     if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(certain, 0.01, 0.1);
     c.solve.quality = certain > 0.06   ? Quality::Draft

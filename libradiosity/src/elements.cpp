@@ -57,15 +57,20 @@ CellSize solve_cell_size(const std::vector<double>& areas, double budget) {
   if (!(total > 0.0)) return {1.0, budget};
   for (double cap = budget / 4.0;; cap *= 2.0) {
     if (cap >= budget) cap = 1e12;  // one surface is nearly everything
-    double log_low = 0.5 * std::log(total / budget) - 8.0;
-    double log_high = 0.5 * std::log(total) + 1.0;
-    for (int i = 0; i < 40; ++i) {
-      const double middle = 0.5 * (log_low + log_high);
-      (cell_count(areas, std::exp(middle), cap) > budget ? log_low : log_high) = middle;
+    // Where all surfaces have their most, smaller cells are no more of them.
+    const double most = static_cast<double>(areas.size()) * cap;
+    if (most > 0.9 * budget) {
+      const double wanted = std::min(budget, 0.999 * most);
+      double log_low = 0.5 * std::log(total / budget) - 8.0;
+      double log_high = 0.5 * std::log(total) + 1.0;
+      for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (log_low + log_high);
+        (cell_count(areas, std::exp(middle), cap) > wanted ? log_low : log_high) = middle;
+      }
+      const double h = std::exp(log_high);
+      if (cap >= budget || cell_count(areas, h, cap) > 0.9 * budget)
+        return {h, std::min(cap, 2.0 * budget)};
     }
-    const double h = std::exp(log_high);
-    if (cap >= budget || cell_count(areas, h, cap) > 0.9 * budget)
-      return {h, std::min(cap, 2.0 * budget)};
   }
 }
 
@@ -154,11 +159,13 @@ class Builder {
     set_cell_size(areas);
   }
 
-  /// A size that was asked for is kept, but for facets of very many cells.
+  /// A size that was asked for is kept, but for facets of very many cells. Small parts have an
+  /// element each; where they are very many, half the budget is for what is larger.
   void set_cell_size(const std::vector<double>& areas) {
+    const double least = static_cast<double>(areas.size()) + 0.5 * budget_;
     const CellSize size = options_.element_size > 0.0
                               ? CellSize{options_.element_size, budget_ * 4.0}
-                              : solve_cell_size(areas, budget_);
+                              : solve_cell_size(areas, std::max(budget_, least));
     cell_ = size.cell;
     cap_ = size.cap;
   }

@@ -10,6 +10,7 @@
 #include "module.h"
 #include "pfm.h"
 #include "scene/output_file.h"
+#include "scene/parallel.h"
 
 namespace atrium::scene {
 namespace fs = std::filesystem;
@@ -25,6 +26,8 @@ class Loader {
   }
   void preload() {
     std::call_once(started_, [this] {
+      // The first loop opens TBB's allocator, and would wait for all that the thread opens.
+      parallel_for(2, 1, [](std::size_t, std::size_t) {});
       thread_ = std::thread([this] { std::call_once(loaded_, [this] { load(); }); });
     });
   }

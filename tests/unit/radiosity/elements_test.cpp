@@ -137,6 +137,34 @@ TEST(Elements, ThousandsOfSeparateScrapsAreGathered) {
   EXPECT_EQ(e.pieces.size(), 20000U);
 }
 
+// Both surfaces have their most elements at some size, and no more at smaller ones.
+TEST(Elements, FineTriangulationsKeepTheBudget) {
+  SceneMaker maker;
+  const auto m = maker.material(test::diffuse(0.5));
+  maker.sphere(m, 2.0f, 5, true);
+  maker.sphere(m, 1.0f, 5, false);
+  const Scene scene = maker.take();
+  ASSERT_GT(scene.triangle_count(), 5000U);
+  EXPECT_LT(make_elements(scene, {.max_elements = 1000}).layout.element_count(), 2000U);
+}
+
+// They have an element each, which may not leave a room around them with one for a wall.
+TEST(Elements, WallsAroundManySmallThingsKeepTheirs) {
+  SceneMaker maker;
+  const auto m = maker.material(test::diffuse(0.5));
+  maker.room({0, 0, 0}, {6, 4, 3}, m);
+  for (int i = 0; i < 400; ++i) {
+    const auto x = static_cast<float>(i % 20), y = static_cast<float>(i / 20);
+    maker.quad(m, {0.2f * x + 1, 0.1f * y + 1, 1}, {0.2f * x + 1.1f, 0.1f * y + 1, 1},
+               {0.2f * x + 1.1f, 0.1f * y + 1.05f, 1}, {0.2f * x + 1, 0.1f * y + 1.05f, 1});
+  }
+  const Elements e = make_elements(maker.take(), {.max_elements = 300});
+  std::size_t room = 0;
+  for (const float a : e.layout.element_area) room += a > 0.1f ? 1U : 0U;
+  EXPECT_GT(room, 100U);
+  EXPECT_LT(e.layout.element_count(), 600U);
+}
+
 // Zero area, repeated and non-finite corners, three triangles on an edge, a flipped neighbour.
 TEST(Elements, DegenerateInputIsSurvived) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
