@@ -37,9 +37,18 @@ std::string describe(const SolveSettings& s) {
 
 namespace {
 
-/// A matrix grows with the square of the elements, and has at most 3000 of their sides.
-std::uint32_t elements_of_matrix(const Effort& effort) {
-  return std::min<std::uint32_t>(effort.max_elements / 30, 1300);
+/// Work grows with the square of the elements where every pair of them counts; a matrix has at most
+/// 3000 of their sides.
+std::uint32_t most_elements(SolverChoice solver, const Effort& effort) {
+  switch (solver) {
+    case SolverChoice::Matrix:
+      return std::min<std::uint32_t>(effort.max_elements / 30, 1300);
+    case SolverChoice::Shooting:
+      return effort.max_elements / 10;
+    case SolverChoice::Rows:
+      break;
+  }
+  return effort.max_elements;
 }
 
 radiosity::SolveOptions solve_options(const SolveSettings& settings, double time_limit) {
@@ -48,9 +57,8 @@ radiosity::SolveOptions solve_options(const SolveSettings& settings, double time
   o.solver = settings.solver == SolverChoice::Rows       ? radiosity::Solver::Rows
              : settings.solver == SolverChoice::Shooting ? radiosity::Solver::Shooting
                                                          : radiosity::Solver::Matrix;
-  o.max_elements = settings.max_elements > 0                 ? settings.max_elements
-                   : settings.solver == SolverChoice::Matrix ? elements_of_matrix(effort)
-                                                             : effort.max_elements;
+  o.max_elements =
+      settings.max_elements > 0 ? settings.max_elements : most_elements(settings.solver, effort);
   o.row_rays = effort.row_rays;
   o.gather_rays = effort.gather_rays;
   o.direct_samples = effort.direct_samples;

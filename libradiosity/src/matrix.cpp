@@ -15,6 +15,7 @@ using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t kLargestMatrix = 3000;
 constexpr double kVisibilityRays = 4e6;  // of all pairs that something may stand between, about
+constexpr std::size_t kFewSides = 16;  // of a wave: rows of a large matrix take long
 constexpr int kDirectFactor = 16;  // samples of lights that are not surfaces, times direct_samples
 
 template <int N>
@@ -59,12 +60,14 @@ class MatrixSolver {
           problem_, problem_.options.direct_samples * kDirectFactor,
           emitters_.empty() ? DirectLights::All : DirectLights::NoSurfaces, work_, counters_);
     std::vector<LaneValues<N>> received(emitters_.size() * size_);
-    work_.run(emitters_.empty() ? 0 : size_, 8, counters_,
-              [&](std::size_t begin, std::size_t end, Counters& c) {
-                for (std::size_t k = begin; k < end; ++k)
-                  for (std::size_t e = 0; e < emitters_.size(); ++e)
-                    received[e * size_ + k] = receive(k, e, c);
-              });
+    work_.run(
+        emitters_.empty() ? 0 : size_, 1, counters_,
+        [&](std::size_t begin, std::size_t end, Counters& c) {
+          for (std::size_t k = begin; k < end; ++k)
+            for (std::size_t e = 0; e < emitters_.size(); ++e)
+              received[e * size_ + k] = receive(k, e, c);
+        },
+        kFewSides);
     for (std::size_t e = 0; e < emitters_.size(); ++e)
       for (std::size_t k = 0; k < size_; ++k)
         for (std::size_t lane = 0; lane < N; ++lane)
@@ -96,14 +99,17 @@ class MatrixSolver {
     const auto n = static_cast<Eigen::Index>(size_);
     require_memory();
     exchange_.assign(problem_.shading.has_medium() ? N : 1, Matrix::Zero(n, n));
-    work_.run(size_, 4, counters_, [&](std::size_t begin, std::size_t end, Counters& c) {
-      for (std::size_t i = begin; i < end; ++i)
-        for (std::size_t j = 0; j < i; ++j) {
-          const LaneValues<N> af = exchange_area(patches_[i], patches_[j], i, j, c);
-          for (std::size_t m = 0; m < exchange_.size(); ++m)
-            exchange_[m](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = af[m];
-        }
-    });
+    work_.run(
+        size_, 1, counters_,
+        [&](std::size_t begin, std::size_t end, Counters& c) {
+          for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+              const LaneValues<N> af = exchange_area(patches_[i], patches_[j], i, j, c);
+              for (std::size_t m = 0; m < exchange_.size(); ++m)
+                exchange_[m](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = af[m];
+            }
+        },
+        kFewSides);
     for (Matrix& m : exchange_) m.template triangularView<Eigen::StrictlyUpper>() = m.transpose();
   }
   void require_memory() {
@@ -126,6 +132,11 @@ class MatrixSolver {
   LaneValues<N> exchange_area(const Patch& a, const Patch& b, std::size_t i, std::size_t j,
                               Counters& counters) const {
     LaneValues<N> result{};
+    constexpr int kOfPieces = 64;
+    if (has_many_pieces(a, b))
+      return sampled_exchange_area(
+          problem_, a, b, {problem_.options.seed + i, static_cast<std::uint32_t>(j), kOfPieces},
+          counters);
     const double free = unoccluded_exchange_area(a, b, always_contours_);
     if (!(free > 0.0)) return result;
     result.fill(free);

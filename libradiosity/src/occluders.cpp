@@ -7,10 +7,8 @@
 namespace atrium::radiosity {
 namespace {
 
-using Triangle = std::array<Vec3d, 3>;
-
 /// Is the triangle behind, or in the plane of, every piece of the patch?
-bool is_behind(const Triangle& triangle, const Patch& patch, double slack) {
+bool is_behind(const std::array<Vec3d, 3>& triangle, const Patch& patch, double slack) {
   return std::all_of(patch.polygons.begin(), patch.polygons.end(), [&](const auto& polygon) {
     const Vec3d normal = polygon_area_vector(polygon).normalized();
     return std::all_of(triangle.begin(), triangle.end(),
@@ -26,8 +24,12 @@ Occluders::Occluders(const scene::Scene& scene) {
     Object object;
     for (std::uint32_t t = 0; t < scene.mesh_of(id).triangles.size(); ++t) {
       const std::array<Vec3f, 3> c = scene.corners(id, t);
-      object.triangles.push_back({c[0].cast<double>(), c[1].cast<double>(), c[2].cast<double>()});
-      for (const Vec3d& v : object.triangles.back()) object.box.extend(v);
+      Triangle& triangle = object.triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.corners[k] = c[k].cast<double>();
+        triangle.box.extend(triangle.corners[k]);
+      }
+      object.box.extend(triangle.box);
     }
     if (!object.triangles.empty()) objects_.push_back(std::move(object));
   }
@@ -46,11 +48,10 @@ bool Occluders::may_block(const Patch& a, const Patch& b) const {
   }
   for (const Object& object : objects_) {
     if (!object.box.intersects(box)) continue;
-    for (const Triangle& t : object.triangles) {
-      scene::Bounds around;
-      for (const Vec3d& v : t) around.extend(v);
-      if (around.intersects(box) && !is_behind(t, a, slack) && !is_behind(t, b, slack)) return true;
-    }
+    for (const Triangle& t : object.triangles)
+      if (t.box.intersects(box) && !is_behind(t.corners, a, slack) &&
+          !is_behind(t.corners, b, slack))
+        return true;
   }
   return false;
 }

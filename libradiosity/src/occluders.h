@@ -17,7 +17,10 @@ class Occluders {
   [[nodiscard]] bool may_block(const Patch& a, const Patch& b) const;
 
  private:
-  using Triangle = std::array<Vec3d, 3>;
+  struct Triangle {
+    std::array<Vec3d, 3> corners;
+    scene::Bounds box;
+  };
   struct Object {
     scene::Bounds box;
     std::vector<Triangle> triangles;

@@ -135,8 +135,10 @@ class ShootingSolver {
   /// free. Where nothing stands between, nothing is sampled: the factors of a convex room sum to 1.
   LaneValues<N> exchange_area(SideIndex j, const Patch& receiver, const Patch& shooter, int rays,
                               Counters& counters) const {
-    LaneValues<N> share = visible_share(problem_, receiver, shooter,
-                                        {problem_.options.seed + shooters_, j, rays}, counters);
+    const PairSamples samples{problem_.options.seed + shooters_, j, rays};
+    if (has_many_pieces(receiver, shooter))
+      return sampled_exchange_area(problem_, receiver, shooter, samples, counters);
+    LaneValues<N> share = visible_share(problem_, receiver, shooter, samples, counters);
     if (share == LaneValues<N>{}) return share;
     const double free = unoccluded_exchange_area(receiver, shooter, false);
     for (double& s : share) s *= free;

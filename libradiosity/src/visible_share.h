@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "patches.h"
 
@@ -20,5 +21,16 @@ struct PairSamples {
 template <int N>
 [[nodiscard]] LaneValues<N> visible_share(const Problem<N>& problem, const Patch& a, const Patch& b,
                                           const PairSamples& samples, scene::Counters& counters);
+
+/// A F [m^2] with what stands between, by points alone: for patches of very many pieces (a bush is
+/// one element), whose exact factors would take the product of their numbers of pieces.
+template <int N>
+[[nodiscard]] LaneValues<N> sampled_exchange_area(const Problem<N>& problem, const Patch& a,
+                                                  const Patch& b, const PairSamples& samples,
+                                                  scene::Counters& counters);
+[[nodiscard]] inline bool has_many_pieces(const Patch& a, const Patch& b) {
+  constexpr std::size_t kMostPairs = 64;
+  return a.polygons.size() * b.polygons.size() > kMostPairs;
+}
 
 }  // namespace atrium::radiosity

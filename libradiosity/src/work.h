@@ -49,10 +49,12 @@ class Work {
   /// stopped() is asked. Counters are summed. False if it ended early; then a prefix is done.
   /// Threads wait for each other once a wave, on average for half a chunk each: of kWave chunks, 16
   /// threads lose a few per cent by that.
+  /// \param chunks  of a wave; few where a chunk takes seconds.
   static constexpr std::size_t kWave = 256;
   using Body = std::function<void(std::size_t, std::size_t, scene::Counters&)>;
-  bool run(std::size_t count, std::size_t grain, scene::Counters& counters, const Body& body) {
-    const std::size_t wave = grain * kWave;
+  bool run(std::size_t count, std::size_t grain, scene::Counters& counters, const Body& body,
+           std::size_t chunks = kWave) {
+    const std::size_t wave = grain * chunks;
     for (std::size_t first = 0; first < count; first += wave) {
       if (stopped()) return false;
       const std::size_t n = std::min(wave, count - first);

@@ -135,5 +135,29 @@ TEST(Rows, StopsOnRequest) {
   EXPECT_GT(r.field.irradiance.direct[0], 0.0f);
 }
 
+// Rows of a large matrix take long: it asks between a few of them.
+TEST(Matrix, StopsOnRequest) {
+  SceneMaker maker;
+  maker.room({0, 0, 0}, {3, 2, 2}, maker.material(test::diffuse(0.5)));
+  maker.quad(maker.material(test::diffuse(0.5)), {1, 1, 1}, {2, 1, 1}, {2, 1.5f, 1}, {1, 1.5f, 1});
+  maker.point_light({1, 1, 1.5}, 5.0);
+  const scene::Scene scene = maker.take();
+  const scene::RayQuery query(scene);
+  const auto rays = [&](bool stops) {
+    std::stop_source source;
+    scene::Control control;
+    control.stop = source.get_token();
+    int reports = 0;  // the first one is before the first row
+    control.progress = [&](std::string_view, double, std::string_view remark) {
+      if (stops && remark == "form factors" && ++reports == 2) source.request_stop();
+    };
+    const SolveResult r = solve(query, material::SpectralBasis::grey(),
+                                {.solver = Solver::Matrix, .element_size = 0.25}, control);
+    EXPECT_EQ(r.stopped_by, stops ? "interrupt" : "tolerance");
+    return static_cast<double>(r.counters[scene::Counter::RaysRow]);
+  };
+  EXPECT_LT(rays(true), 0.02 * rays(false));
+}
+
 }  // namespace
 }  // namespace atrium::radiosity

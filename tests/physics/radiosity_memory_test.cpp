@@ -142,5 +142,16 @@ TEST(MemoryLimitOfMatrix, RefusesMatricesThatDoNotFit) {
   EXPECT_LE(m.result.memory.peak, options.memory_limit);
 }
 
+TEST(MemoryLimitOfShooting, HasElementsThatFit) {
+  const scene::Scene scene = room(false);
+  const scene::RayQuery query(scene);
+  const SolveOptions options{.solver = Solver::Shooting, .memory_limit = 2000000};
+  const Measured m = measure(query, options);
+  EXPECT_EQ(m.result.stopped_by, "memory limit");
+  EXPECT_GT(m.result.field.element_count(), 30U);
+  EXPECT_LE(m.result.memory.peak, options.memory_limit);
+  EXPECT_LE(m.allocated, options.memory_limit);
+}
+
 }  // namespace
 }  // namespace atrium::radiosity

@@ -186,6 +186,28 @@ TEST(Solvers, Agree) {
 
 // Two plates and a lamp in the open. Fields in single precision and factors by two rules leave less
 // than 1e-5; what was not shot is in the balance as ambient light.
+// A ball of some hundreds of pieces an element: pairs of such elements are sampled, as exact
+// factors take the product of their numbers.
+TEST(Solvers, AgreeOnABallOfManyPieces) {
+  SceneMaker maker;
+  const auto white = maker.material(test::diffuse(0.5));
+  const auto lamp = maker.material(test::emitter(10.0, 0.5));
+  maker.room({-1.5f, -1.5f, -0.6f}, {1.5f, 1.5f, 1.4f}, {white, white, white, white, white, white});
+  maker.quad(lamp, {-0.5f, -0.5f, 1.3f}, {-0.5f, 0.5f, 1.3f}, {0.5f, 0.5f, 1.3f},
+             {0.5f, -0.5f, 1.3f});
+  maker.sphere(white, 0.4f, 4, false);
+  const scene::Scene scene = maker.take();
+  const auto of_ball = [&](Solver solver) {
+    const Solved s(scene, {.solver = solver, .element_size = 0.8, .seed = 3});
+    return s.mean([&](std::size_t e) { return s.total(e); },
+                  [&](std::size_t e) { return s.object(e) + 1 == scene.objects.size(); });
+  };
+  const auto rows = of_ball(Solver::Rows);
+  EXPECT_GT(rows.value, 0.5);
+  EXPECT_NEAR(of_ball(Solver::Matrix).value, rows.value, 0.02 * rows.value);
+  EXPECT_NEAR(of_ball(Solver::Shooting).value, rows.value, 0.03 * rows.value);
+}
+
 TEST(Shooting, OpenSceneBalances) {
   SceneMaker maker;
   const auto white = maker.material(test::diffuse(0.6));
