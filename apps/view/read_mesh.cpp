@@ -19,6 +19,7 @@
 #include <stdexcept>
 
 #include "check_cells.h"
+#include "checked_reader.h"
 #include "material/error.h"
 #include "mesh.h"
 #include "scene/mesh_io.h"
@@ -33,7 +34,7 @@ namespace {
 template <class Reader>
 auto read_with(const std::string& file, const std::string& text) {
   VtkErrors errors;
-  vtkNew<Reader> reader;
+  vtkNew<CheckedReader<Reader>> reader;
   if (text.empty()) {
     reader->SetFileName(file.c_str());
   } else {

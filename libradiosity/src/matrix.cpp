@@ -15,7 +15,7 @@ using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t kLargestMatrix = 3000;
 constexpr double kVisibilityRays = 4e6;  // of all pairs that something may stand between, about
-constexpr std::size_t kFewSides = 16;  // of a wave: rows of a large matrix take long
+constexpr std::size_t kFewSides = 16;    // of a wave: rows of a large matrix take long
 constexpr int kDirectFactor = 16;  // samples of lights that are not surfaces, times direct_samples
 
 template <int N>

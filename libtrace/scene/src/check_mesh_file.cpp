@@ -48,16 +48,21 @@ std::string_view type_of(std::string_view tag) {
 }
 
 /// VTK follows a null pointer for arrays of a type that it does not know, whatever their element is
-/// called: only what files of this kind have is let through, and no declarations.
+/// called: only what files of this kind have is let through, and no declarations. Texts are of the
+/// whole file; those of points and cells it would write behind the end of their array.
 std::string what_is_unknown(std::string_view text) {
+  bool in_piece = false;
   for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
     std::string_view tag = text.substr(at + 1);
+    if (tag.starts_with("/Piece")) in_piece = false;
     if (tag.starts_with("?xml ") || tag.starts_with("!--") || tag.starts_with("/")) continue;
     tag = tag.substr(0, tag.find('>'));
     const std::string_view name = tag.substr(0, tag.find_first_of(" \t\r\n/"));
     if (name == "AppendedData") return {};  // no XML from here on
     if (!is_one_of(name, kElements)) return "element '" + std::string(name.substr(0, 40)) + "'";
-    if ((name == "DataArray" || name == "Array") && !is_one_of(type_of(tag), kTypes))
+    in_piece = in_piece || name == "Piece";
+    if ((name == "DataArray" || name == "Array") &&
+        (!is_one_of(type_of(tag), kTypes) || (in_piece && type_of(tag) == "String")))
       return "type '" + std::string(type_of(tag).substr(0, 40)) + "' of an array";
   }
   return {};

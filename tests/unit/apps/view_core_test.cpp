@@ -114,6 +114,32 @@ TEST(ViewMesh, TruncatedFilesAreRefused) {
   }
 }
 
+// VTK's reader writes the ones that are too many behind the end of their array.
+TEST(ViewMesh, NoMoreTextsThanAnnounced) {
+  const TempFolder folder;
+  scene::PolygonMesh mesh = ViewRoom::mesh();
+  mesh.field_data["object_names"] = std::vector<std::string>(300, "thing");
+  scene::write_polygon_mesh(mesh, folder / "room.vtp");
+  EXPECT_EQ(read_mesh(folder / "room.vtp").objects.size(), 300U);
+  std::ifstream in(folder / "room.vtp", std::ios::binary);
+  std::string whole{std::istreambuf_iterator<char>(in), {}};
+  const std::string announced = "NumberOfTuples=\"300\"";
+  const std::size_t at = whole.find(announced, whole.find("object_names"));
+  ASSERT_NE(at, std::string::npos);
+  whole.replace(at, announced.size(), "NumberOfTuples=\"200\"");
+  folder.write("room.vtp", whole);
+  EXPECT_NE(error_of([&] { (void)read_mesh(folder / "room.vtp"); }).find("texts"),
+            std::string::npos);
+  // Of points and cells they are not known at all.
+  std::string text =
+      "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"0\"><PointData>"
+      "<Array type=\"String\" NumberOfTuples=\"1\" format=\"ascii\">0 0</Array>"
+      "</PointData></Piece></PolyData></VTKFile>";
+  folder.write("points.vtp", text);
+  EXPECT_NE(error_of([&] { (void)read_mesh(folder / "points.vtp"); }).find("String"),
+            std::string::npos);
+}
+
 const char* const kForeign =
     "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData>"
     "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"Float32\" "
@@ -131,7 +157,9 @@ std::string foreign(const std::string& corner, const std::string& arrays) {
 TEST(ViewMesh, ForeignFilesShowTheirOwnArraysOrNone) {
   const TempFolder folder;
   folder.write("bad.vtp", foreign("9", ""));
-  EXPECT_NE(error_of([&] { (void)read_mesh(folder / "bad.vtp"); }).find("corner 2 of the cells is point 9"),
+  EXPECT_NE(error_of([&] {
+              (void)read_mesh(folder / "bad.vtp");
+            }).find("corner 2 of the cells is point 9"),
             std::string::npos);
   folder.write("bare.vtp", foreign("2", ""));
   EXPECT_TRUE(fields_of(read_mesh(folder / "bare.vtp")).empty());
