@@ -22,15 +22,16 @@ double pixel_error(const RenderCommand& c) {
   return c.error > 0.0 ? std::min(c.error, of_blocks) : of_blocks;
 }
 
-/// Elements of 13 cm on the sides of the scene's box, as many as --quality normal at most: in
-/// office_floor coarser ones lost 5.5 % of the light.
-double least_elements(const scene::Scene& scene) {
+/// Elements of this edge [m] on the sides of the scene's box, as many as --quality normal at most.
+double elements_of(const scene::Scene& scene, double edge) {
   if (scene.bounds.isEmpty()) return 3000.0;
   const Vec3d size = scene.bounds.sizes();
   const double area =
       2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());  // [m^2]
-  return std::clamp(area / (0.13 * 0.13), 3000.0, 60000.0);
+  return std::clamp(area / (edge * edge), 3000.0, 60000.0);
 }
+
+constexpr double kEdge = 0.13;  // [m] for pictures of 2 % and better; coarser ones in proportion
 
 /// Those are read from the mesh where they are seen.
 bool has_caustics(const scene::Features& features) {
@@ -58,8 +59,8 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
     if (c.solve.quality == Quality::Draft && c.solve.solver == SolverChoice::Rows &&
         plan.indirect == trace::Indirect::Gather && !has_caustics(features) &&
         c.save_solution.empty())
-      c.solve.max_elements =
-          static_cast<std::uint32_t>(std::min<double>(effort.max_elements, least_elements(scene)));
+      c.solve.max_elements = static_cast<std::uint32_t>(
+          std::min<double>(effort.max_elements, elements_of(scene, kEdge)));
     return plan;
   }
   plan.samples = c.samples > 0 ? c.samples : kMostSamples;
@@ -72,8 +73,9 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
                       : certain > 0.02 ? Quality::Normal
                                        : Quality::High;
     // Elements grow with the error, as the noise of what is read from them does.
+    const double least = elements_of(scene, kEdge * std::max(1.0, error / 0.02));
     c.solve.max_elements = static_cast<std::uint32_t>(
-        std::clamp(20000.0 * std::pow(0.04 / certain, 1.2), least_elements(scene), 1.5e5));
+        std::clamp(20000.0 * std::pow(0.04 / certain, 1.2), least, 1.5e5));
     const std::string radiosity = c.solve.error > 0.0 ? "to " + percent(c.solve.error) : "as asked";
     std::snprintf(text, sizeof text,
                   "error asked for: radiosity %s on about %u elements%s, %s, up to %d samples",
