@@ -74,8 +74,9 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
                                        : Quality::High;
     // Elements grow with the error, as the noise of what is read from them does.
     const double least = elements_of(scene, kEdge * std::max(1.0, error / 0.02));
+    const double growth = certain > 0.04 ? 0.75 : 1.2;
     c.solve.max_elements = static_cast<std::uint32_t>(
-        std::clamp(20000.0 * std::pow(0.04 / certain, 1.2), least, 1.5e5));
+        std::clamp(20000.0 * std::pow(0.04 / certain, growth), least, 1.5e5));
     const std::string radiosity = c.solve.error > 0.0 ? "to " + percent(c.solve.error) : "as asked";
     std::snprintf(text, sizeof text,
                   "error asked for: radiosity %s on about %u elements%s, %s, up to %d samples",
