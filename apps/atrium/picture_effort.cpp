@@ -68,20 +68,22 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
   if (c.method == trace::Method::Hybrid && c.solution.empty()) {
     const bool caustics = has_caustics(features);
     const double certain = caustics ? error : 2.0 * error;
-    if (c.solve.solver == SolverChoice::Rows) c.solve.error = std::clamp(certain, 0.01, 0.1);
     c.solve.quality = certain > 0.06   ? Quality::Draft
                       : certain > 0.02 ? Quality::Normal
                                        : Quality::High;
-    // Elements grow with the error, as the noise of what is read from them does.
-    const double least = elements_of(scene, kEdge * std::max(1.0, error / 0.02));
-    const double growth = certain > 0.04 ? 0.75 : 1.2;
-    c.solve.max_elements = static_cast<std::uint32_t>(
-        std::clamp(20000.0 * std::pow(0.04 / certain, growth), least, 1.5e5));
-    const std::string radiosity = c.solve.error > 0.0 ? "to " + percent(c.solve.error) : "as asked";
-    std::snprintf(text, sizeof text,
-                  "error asked for: radiosity %s on about %u elements%s, %s, up to %d samples",
-                  radiosity.c_str(), c.solve.max_elements,
-                  caustics ? " (caustics are read where they are seen)" : "",
+    std::string radiosity = "as asked";
+    if (c.solve.solver == SolverChoice::Rows) {
+      c.solve.error = std::clamp(certain, 0.01, 0.1);
+      // Elements grow with the error, as the noise of what is read from them does.
+      const double least = elements_of(scene, kEdge * std::max(1.0, error / 0.02));
+      const double growth = certain > 0.04 ? 0.75 : 1.2;
+      c.solve.max_elements = static_cast<std::uint32_t>(
+          std::clamp(20000.0 * std::pow(0.04 / certain, growth), least, 1.5e5));
+      radiosity = "to " + percent(c.solve.error) + " on about " +
+                  std::to_string(c.solve.max_elements) + " elements";
+    }
+    std::snprintf(text, sizeof text, "error asked for: radiosity %s%s, %s, up to %d samples",
+                  radiosity.c_str(), caustics ? " (caustics are read where they are seen)" : "",
                   plan.indirect == trace::Indirect::Mesh ? "read at what is seen (mesh)"
                                                          : "read behind a bounce (gather)",
                   plan.samples);

@@ -196,13 +196,16 @@ std::filesystem::path cache_file(const Workload& workload, const std::vector<Rec
                                  const ReferenceOptions& o) {
   if (o.cache.empty()) return {};
   std::ostringstream name;
-  // The receivers follow from the scene, their number and this place of the first of them.
-  const Vec3f first = receivers.front().sample(workload.scene(), {0.5f, 0.5f}).position;
-  const auto place = std::bit_cast<std::array<std::uint32_t, 3>>(
-      std::array<float, 3>{first.x(), first.y(), first.z()});
-  name << workload.name() << '-' << std::hex << scene::hash_scene(workload.scene()) << '-'
-       << place[0] << place[1] << place[2] << '-' << std::dec << receivers.size() << '-' << o.seed
-       << '-' << o.noise << '-' << o.max_rays << ".txt";
+  // Those of elements follow from the mesh, so every place counts (FNV-1a).
+  std::uint64_t places = 0xcbf29ce484222325U;
+  for (const Receiver& r : receivers) {
+    const Vec3f p = r.sample(workload.scene(), {0.5f, 0.5f}).position;
+    for (const float x : {p.x(), p.y(), p.z()})
+      places = (places ^ std::bit_cast<std::uint32_t>(x)) * 0x100000001b3U;
+  }
+  name << workload.name() << '-' << std::hex << scene::hash_scene(workload.scene()) << '-' << places
+       << '-' << std::dec << receivers.size() << '-' << o.seed << '-' << o.noise << '-'
+       << o.max_rays << ".txt";
   return o.cache / name.str();
 }
 

@@ -88,6 +88,4 @@ reading, repair and tessellation are *load*, together with building Embree's hie
 `--quality draft`, seed 1, median of three under 2 s. The rest of the process's CPU seconds is its start and end,
 and the image module, which loads meanwhile. *stated*: RMS error of pixels.
 
-{table(["format", "triangles", "elements", "MB of file", *PHASES, "CPU s", "wall s", "MB", "rays", "stated"], rows)}
-A draft asks for about 15,000 elements; finely tessellated curved surfaces get more, which is what a million triangles
-cost: not the file."""
+{table(["format", "triangles", "elements", "MB of file", *PHASES, "CPU s", "wall s", "MB", "rays", "stated"], rows)}"""

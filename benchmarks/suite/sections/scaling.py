@@ -173,8 +173,8 @@ its pixels. Scenes are generated (`benchmarks/suite/rooms.py`, `meshes.py`) or l
 
 
 NOTES = {
-    "Triangles": "A room with 64 spheres in one PLY file, draft, 64x48 pixels. A draft asks for about 15,000 elements; "
-    "finely tessellated curved surfaces get more, and these are what the largest rows cost.",
+    "Triangles": "A room with 64 spheres in one PLY file, draft, 64x48 pixels. Elements keep the limit of a draft; "
+    "what the largest rows cost is reading, facets and Embree's hierarchy.",
     "Elements": "corridor_door solved under a limit of memory, which is what decides about the elements.",
     "Lights": "A hall with lamps of 2 cm, always of the same flux together and none of them in the picture, draft, 64x48.",
     "Reflectance": "A closed room in which everything but the lamp reflects the same, draft, 64x48 pixels: rays hardly "

@@ -53,15 +53,21 @@ constexpr const char* kSmallPicture =
     " --size 64x64 --samples 1 --method direct --spectrum rgb --quiet";
 constexpr const char* kSmallSolution = " --spectrum rgb --time-limit 0.02 --quiet";
 
+/// Of pictures; without OpenImageIO one is left.
+std::vector<std::string> picture_endings() {
+  if (atrium::scene::image_io_available()) return {".pfm", ".exr", ".hdr", ".png", ".jpg"};
+  return {".pfm"};
+}
+
 // ---- disks ----
 
 // A limit on the size of files that is below what any of them needs; the signal that goes with it
 // is ignored, so that writing fails as on a full disk.
 TEST_F(Faults, AFullDiskLeavesNoFile) {
   constexpr const char* kLimit = "trap '' XFSZ; ulimit -f 1; ";
-  for (const char* ending : {".exr", ".pfm", ".hdr", ".png", ".jpg"}) {
+  for (const std::string& ending : picture_endings()) {
     SCOPED_TRACE(ending);
-    const std::string name = std::string("a") + ending;
+    const std::string name = "a" + ending;
     expect_error(with(kLimit, "render room.yaml -o " + name + kSmallPicture), 1, name);
     EXPECT_EQ(files(), "room.yaml ");
   }
@@ -79,9 +85,11 @@ TEST_F(Faults, AFullFileSystemLeavesNoFile) {
   std::filesystem::create_directories(mount);
   if (::mount("none", mount.c_str(), "tmpfs", 0, "size=64k") != 0)
     GTEST_SKIP() << "no file system may be mounted here";
-  for (const char* name : {"small/a.exr", "small/a.png", "small/a.pfm"}) {
+  for (const std::string& ending : picture_endings()) {
+    if (ending == ".jpg" || ending == ".hdr") continue;  // less than 64 kB, or nearly
+    const std::string name = "small/a" + ending;
     SCOPED_TRACE(name);
-    const Result r = run(folder, std::string("render room.yaml -o ") + name +
+    const Result r = run(folder, "render room.yaml -o " + name +
                                      " --size 400x300 --samples 1 --method direct --spectrum rgb "
                                      "--quiet");
     expect_error(r, 1, name);

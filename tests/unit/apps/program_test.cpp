@@ -443,6 +443,7 @@ TEST_F(AtriumRun, AnInterruptThatArrivesTwiceIsOne) {
 
 // The program alone in a folder finds no module: one line that names it, code 1.
 TEST_F(AtriumRun, AMissingModuleIsAClearFailure) {
+  if (!atrium::scene::image_io_available()) GTEST_SKIP() << "built without OpenImageIO";
   std::filesystem::create_directories(folder / "bin");
   std::filesystem::copy_file(ATRIUM_PROGRAM, folder / "bin/atrium");
   const Result r = run_command(folder,
