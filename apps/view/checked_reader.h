@@ -11,9 +11,9 @@
 
 namespace atrium::view {
 
-/// Does an array of texts hold as many as it announces, and not more? VTK's readers write the ones
-/// that are too many behind its end. To be asked while the parser has the file.
-[[nodiscard]] inline bool has_as_many_texts(vtkXMLDataElement* array, vtkXMLDataParser* parser) {
+/// Does an array of texts hold no more than it announces? VTK's readers write the ones that are too
+/// many behind its end. To be asked while the parser has the file.
+[[nodiscard]] inline bool holds_no_more_texts(vtkXMLDataElement* array, vtkXMLDataParser* parser) {
   std::int64_t tuples = 0, components = 1, offset = 0;
   array->GetScalarAttribute("NumberOfTuples", tuples);
   array->GetScalarAttribute("NumberOfComponents", components);
@@ -50,7 +50,7 @@ class CheckedReader : public Reader {
         vtkXMLDataElement* array = fields->GetNestedElement(k);
         const char* type = array->GetAttribute("type");
         if (type == nullptr || std::strcmp(type, "String") != 0) continue;
-        if (has_as_many_texts(array, this->XMLParser)) continue;
+        if (holds_no_more_texts(array, this->XMLParser)) continue;
         vtkErrorMacro("an array of texts holds more than it announces");
         return 0;
       }

@@ -1,4 +1,5 @@
 #include "material/error.h"
+#include "memory_plan.h"
 #include "solvers.h"
 
 namespace atrium::radiosity {
@@ -70,10 +71,9 @@ FluxBalance flux_balance(const Problem<N>& problem, const Solution<N>& s, const 
 
 template <int N>
 std::vector<Beyond<N>> beyond_sides(const Problem<N>& problem, Work& work, Counters& counters) {
-  constexpr int kRays = 256;
   const std::size_t n = problem.sides.active.size();
-  const Rows<N> rows =
-      trace_rows<N>(problem, {}, {}, std::vector<std::uint8_t>(n, 1), 0, kRays, work, counters);
+  const Rows<N> rows = trace_rows<N>(problem, {}, {}, std::vector<std::uint8_t>(n, 1), 0,
+                                     kBalanceRays, work, counters);
   std::vector<Beyond<N>> all(n);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const LaneValues<N> escaped = lanes_of(rows.escaped[k]);

@@ -5,6 +5,9 @@
 
 namespace atrium::radiosity {
 
+/// Of a side, whose rows beyond_sides() holds at once.
+inline constexpr int kBalanceRays = 256;
+
 /// What decides how much memory a side takes.
 struct SideShape {
   int lanes = 1;

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "error_scale.h"
-#include "scene/parallel.h"
 #include "share_choice.h"
 
 namespace atrium::trace {
@@ -168,19 +167,12 @@ void Film::share() {
   const float unit = light_unit();
   const std::vector<Rgb> weights = share_weights(unit);
   changes_.assign(pixels_.size(), {});
-  // Most of a part's work is loops in parallel; what is not runs beside that of the other.
-  std::array<std::vector<Illumination>, kParts> lights;
-  std::array<std::vector<std::uint8_t>, kParts> choice;
-  scene::parallel_for(kParts, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = begin; part < end; ++part) {
-      lights[part] = share_by_levels(where, illumination(part, unit));
-      choice[part] = choose_shares(width_, height_, lights[part], weights);
-    }
-  });
-  for (std::size_t part = 0; part < kParts; ++part)
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::vector<Illumination> lights = share_by_levels(where, illumination(part, unit));
+    const std::vector<std::uint8_t> choice = choose_shares(width_, height_, lights, weights);
     for (std::size_t i = 0; i < pixels_.size(); ++i)
-      if (choice[part][i] > 0 && usable(i))
-        take_shared(i, part, lights[part][choice[part][i]], unit);
+      if (choice[i] > 0 && usable(i)) take_shared(i, part, lights[choice[i]], unit);
+  }
 }
 
 void Film::take_shared(std::size_t i, std::size_t part, const Illumination& light, float unit) {
