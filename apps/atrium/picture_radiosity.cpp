@@ -114,12 +114,9 @@ bool PictureRadiosity::may_refine() const {
 
 bool PictureRadiosity::refine(const trace::RenderResult& picture) {
   if (!may_refine()) return false;
-  // How far above what it should be, of whatever was asked for.
-  double excess = 0.0;
-  if (command_.error > 0.0) excess = picture.field_error_estimate / (kAim * command_.error);
-  if (command_.block_error > 0.0)
-    excess = std::max(excess, picture.block_field_error_estimate / (kAim * command_.block_error));
-  const double factor = std::clamp(excess, 2.0, 6.0);  // the mesh's error goes as its elements do
+  // The mesh's error goes as its elements do. What is certain of it counts: an estimate that is
+  // too large would cost far more than another solution.
+  const double factor = std::clamp(picture.field_excess / kAim, 2.0, 6.0);
   const double elements = std::min(factor * settings_.max_elements, kMostElements);
   ++refinements_;
   settings_.max_elements = std::max(settings_.max_elements, static_cast<std::uint32_t>(elements));

@@ -28,8 +28,7 @@ void add_pack(RenderResult& sum, const RenderResult& pack) {
   sum.bias_estimate = join(sum.bias_estimate, pack.bias_estimate);
   sum.field_error_estimate = join(sum.field_error_estimate, pack.field_error_estimate);
   sum.block_error_estimate = join(sum.block_error_estimate, pack.block_error_estimate);
-  sum.block_field_error_estimate =
-      join(sum.block_field_error_estimate, pack.block_field_error_estimate);
+  sum.field_excess = std::max(sum.field_excess, pack.field_excess);
   sum.rounds = std::max(sum.rounds, pack.rounds);
   if (pack.stopped_by != "error") sum.stopped_by = pack.stopped_by;
 

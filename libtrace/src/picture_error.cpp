@@ -10,6 +10,7 @@
 namespace atrium::trace {
 namespace {
 
+constexpr double kCertain = 3.0;  // standard errors; the question is asked in every round
 constexpr int kReach = 2;  // of the squares that bias is averaged over [pixels]
 
 double square(double v) { return v * v; }
@@ -110,7 +111,7 @@ ErrorEstimate estimate_error(const PictureSamples& s) {
   const FieldSquare field = s.checked() ? field_square(s, scale, noise + bias) : FieldSquare{};
   const double field_part = std::max(0.0, field.mean);
   e.field = std::sqrt(field_part);
-  e.least_field = std::sqrt(std::max(0.0, field.mean - 2.0 * field.error));
+  e.least_field = std::sqrt(std::max(0.0, field.mean - kCertain * field.error));
   e.value = std::sqrt(noise + bias + field_part);
   return e;
 }

@@ -12,7 +12,7 @@ struct ErrorEstimate {
   double noise = 0.0;  ///< its part by too few samples
   double bias = 0.0;   ///< its part by sharing between pixels
   double field = 0.0;  ///< its part by the field's own error; value^2 = noise^2 + bias^2 + field^2
-  double least_field = 0.0;  ///< the same, 95 % certain to be there; 0 if it may be nothing
+  double least_field = 0.0;  ///< the same, 99.9 % certain to be there; 0 if it may be nothing
   /// Mean over channels of e^2 by pixel; right in the mean over many pixels only, bias_squares may
   /// be negative.
   std::vector<float> noise_squares, bias_squares;

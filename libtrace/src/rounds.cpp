@@ -38,6 +38,12 @@ double excess(const Errors& e, const RenderOptions& o) {
                   o.block_error > 0.0 ? e.block.value / o.block_error : 0.0);
 }
 
+/// The same of what is certain of the field's own error.
+double field_excess(const Errors& e, const RenderOptions& o) {
+  return std::max(o.error > 0.0 ? e.pixel.least_field / o.error : 0.0,
+                  o.block_error > 0.0 ? e.block.least_field / o.block_error : 0.0);
+}
+
 /// Is the field's own error, which samples do not lower, too large?
 bool is_field_too_large(const ErrorEstimate& e, double asked, double share) {
   if (!(asked > 0.0)) return false;
@@ -132,7 +138,7 @@ class Rounds {
     result_.bias_estimate = e.pixel.bias;
     result_.field_error_estimate = e.pixel.field;
     result_.block_error_estimate = e.block.value;
-    result_.block_field_error_estimate = e.block.field;
+    result_.field_excess = field_excess(e, options_);
     result_.complete = result_.stopped_by == "error" || result_.stopped_by == "samples" ||
                        result_.stopped_by == "radiosity";
     result_.image = film_.image(error_layer(samples));

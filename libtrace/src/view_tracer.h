@@ -254,7 +254,8 @@ class ViewTracer {
     const std::uint32_t index = number / kSets;
     if (check_every_ == 0 || (scene::hash32(stream) + index) % check_every_ != 0)
       return trace_from_eye(view_, ray, guide, sampler, nullptr, counters);
-    scene::Sampler numbers(view_.options.seed ^ kCheckStream, stream, index);
+    scene::Sampler numbers(view_.options.seed ^ (kCheckStream + view_.options.check_seed), stream,
+                           index);
     PixelSample<N> sample = trace_from_eye(view_, ray, guide, sampler, &numbers, counters);
     sample.field_missed *= static_cast<float>(check_every_);
     return sample;

@@ -56,8 +56,11 @@ struct RenderOptions {
   /// pixel gets `samples`.
   double error = 0.0, block_error = 0.0;
   /// The share of the error asked for that the field's own may have: a picture where it is found to
-  /// be larger stops by "radiosity". 1: only if samples cannot make up for it (95 % certain).
+  /// be larger stops by "radiosity". 1: only if samples cannot make up for it (99.9 % certain).
   double field_share = 1.0;
+  /// Which numbers check the field: others for another field, so that what one of them found by
+  /// chance is not found again.
+  std::uint64_t check_seed = 0;
   double time_limit = 0.0;  ///< [s], looked at between passes over the image; 0: none
   std::uint64_t seed = 1;
   int max_specular_depth = 64;  ///< mirror and glass events of one path (paper mode)
@@ -92,7 +95,9 @@ struct RenderResult {
   double bias_estimate = 0.0;         ///< its part that sharing between pixels causes
   double field_error_estimate = 0.0;  ///< its part by the field; 0 without an error asked for
   double block_error_estimate = 0.0;  ///< after averaging 8x8 pixels
-  double block_field_error_estimate = 0.0;  ///< its part by the field
+  /// How many times the error asked for the field's own certainly is (99.9 %), the worse of pixels
+  /// and blocks; 0 if it may be nothing.
+  double field_excess = 0.0;
   /// "error" (reached), "radiosity" (the field's own error is too large, see field_share),
   /// "samples", "time limit", "interrupt"
   std::string stopped_by;
