@@ -41,6 +41,11 @@ struct PixelSample {
   Vec3f position = Vec3f::Zero();
 
   Spectrum<N>& operator[](Term t) { return term[static_cast<std::size_t>(t)]; }
+  /// Light of the first surface itself or of the sky behind everything.
+  void add_emission(const Spectrum<N>& radiance) {
+    (*this)[Term::Emission] += radiance;
+    light_class[static_cast<std::size_t>(LightClass::LE)] += radiance;
+  }
   [[nodiscard]] Spectrum<N> sum() const {
     Spectrum<N> s;
     for (const Spectrum<N>& t : term) s += t;

@@ -12,6 +12,7 @@
 #include "integrator.h"
 #include "rounds.h"
 #include "scene/parallel.h"
+#include "small_lamps.h"
 
 namespace atrium::trace {
 
@@ -67,6 +68,7 @@ class ViewTracer {
         from_lights_(from_lights),
         check_every_(check_every),
         control_(control),
+        lamps_(view.shading.scene(), view.shading.lights().surfaces(), eye),
         tiles_(tiles_of(eye.window.width, eye.window.height)),
         guides_(tiles_.size()),
         counters_(tiles_.size()) {
@@ -233,15 +235,43 @@ class ViewTracer {
     const std::uint32_t replicate = number % kSets;
     scene::Sampler sampler(o.seed, scene::hash_combine(pixel, replicate), number / kSets);
     const Vec2f jitter = sampler.next_2d();
-    const Vec2d place((px + static_cast<double>(jitter.x())) / o.width,
-                      (py + static_cast<double>(jitter.y())) / o.height);
-    const scene::Camera::CameraRay r = eye_.camera.ray(place, eye_.aspect);
-    const scene::Ray ray{r.origin, r.direction};
+    const scene::Ray ray = camera_ray(px, py, jitter);
     if (from_lights_) trace_light(pixel, number, work, counters);
-    film.add(x, y, replicate,
-             from_lights_ ? trace_bidirectional(view_, eye_, ray, work.path, sampler, counters)
-                          : trace_and_check(ray, pixel, number, guide, sampler, counters),
-             view_.shading.basis(), counters);
+    PixelSample<N> sample =
+        from_lights_ ? trace_bidirectional(view_, eye_, ray, work.path, sampler, counters)
+                     : trace_and_check(ray, pixel, number, guide, sampler, counters);
+    if (const auto lamps = lamps_.of(x, y); !lamps.empty()) {
+      if (is_among(lamps, jitter)) sample.add_emission(sample[Term::Emission] * -1.0f);
+      for (std::uint32_t k = 0; k < kLampRays; ++k) {
+        scene::Sampler numbers(o.seed ^ kLampStream, scene::hash_combine(pixel, replicate),
+                               number / kSets * kLampRays + k);
+        for (const FilmRect& lamp : lamps) {
+          const scene::Ray to_lamp = camera_ray(px, py, lamp.sample(numbers.next_2d()));
+          sample.add_emission(first_emission(to_lamp, counters) * (lamp.area() / kLampRays));
+        }
+      }
+    }
+    film.add(x, y, replicate, sample, view_.shading.basis(), counters);
+  }
+
+  /// \param at  within the pixel, in [0, 1]^2.
+  [[nodiscard]] scene::Ray camera_ray(int px, int py, const Vec2f& at) const {
+    const Vec2d place((px + static_cast<double>(at.x())) / view_.options.width,
+                      (py + static_cast<double>(at.y())) / view_.options.height);
+    const scene::Camera::CameraRay r = eye_.camera.ray(place, eye_.aspect);
+    return {r.origin, r.direction};
+  }
+
+  /// Radiance of the first surface itself that a camera ray meets, or of the sky.
+  Spectrum<N> first_emission(const scene::Ray& ray, scene::Counters& counters) const {
+    const scene::Shading<N>& shading = view_.shading;
+    float distance = 0.0f;
+    const auto hit = shading.closest(ray, counters, scene::Counter::RaysPrimary, &distance);
+    if (!hit) return sky_radiance(shading, ray);
+    const Spectrum<N> emitted = shading.lights().emitted(*hit, -ray.direction);
+    if (emitted.is_zero()) return emitted;
+    const scene::Interaction<N> surface = shading.interact(*hit, -ray.direction);
+    return emitted * segment_transmittance(shading, {}, surface, ray, distance);
   }
 
   /// Every check_every_-th sample checks the field, from a random one of each pixel and replicate
@@ -283,7 +313,9 @@ class ViewTracer {
   // waits for the end of such a piece: sums have the same order whether there was one or not.
   static constexpr std::size_t kTilesAtOnce = 64;
   static constexpr std::uint32_t kSamplesAtOnce = 4;
+  static constexpr std::uint32_t kLampRays = 4;  // of a sample of a pixel that shows small lamps
   static constexpr std::uint64_t kCheckStream = 0x636865636b21ULL;
+  static constexpr std::uint64_t kLampStream = 0x6c616d707321ULL;
   static constexpr std::uint64_t kLightStream = 0x6c696768747321ULL;
 
   const View<N>& view_;
@@ -293,6 +325,7 @@ class ViewTracer {
   const std::uint32_t check_every_;
   const scene::Control& control_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const SmallLamps lamps_;
   std::vector<Tile> tiles_;
   std::vector<GatherGuide> guides_;        // by tile
   std::vector<scene::Counters> counters_;  // by tile
