@@ -24,5 +24,4 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/atrium-config-version.cm
   COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/atrium-config.cmake"
               "${PROJECT_BINARY_DIR}/atrium-config-version.cmake"
-              "${PROJECT_SOURCE_DIR}/cmake/FindOpenSubdiv.cmake"
         DESTINATION "${ATRIUM_PACKAGE_DIR}")

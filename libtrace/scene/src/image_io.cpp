@@ -41,10 +41,7 @@ class Loader {
   void load() {
     try {
 #ifdef ATRIUM_WITH_OPENIMAGEIO
-      const auto entry =
-          reinterpret_cast<ImageIoEntry>(load_module("atrium_image_io.so", "atrium_image_io"));
-      module_ = entry(kModuleInterface);
-      if (module_ == nullptr) problem_ = "atrium_image_io.so belongs to another version";
+      module_ = &load_interface<ImageIoEntry>("atrium_image_io");
 #else
       problem_ = "this build is without OpenImageIO";
 #endif

@@ -15,14 +15,8 @@ namespace {
 
 const MeshIoModule& module() {
 #ifdef ATRIUM_WITH_VTK
-  static const MeshIoModule* const loaded = [] {
-    const auto entry =
-        reinterpret_cast<MeshIoEntry>(load_module("atrium_mesh_io.so", "atrium_mesh_io"));
-    const MeshIoModule* m = entry(kModuleInterface);
-    if (m == nullptr) throw RuntimeFailure("atrium_mesh_io.so belongs to another version");
-    return m;
-  }();
-  return *loaded;
+  static const MeshIoModule& loaded = load_interface<MeshIoEntry>("atrium_mesh_io");
+  return loaded;
 #else
   throw RuntimeFailure("mesh files cannot be used: this build is without VTK");
 #endif

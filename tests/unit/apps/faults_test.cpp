@@ -289,6 +289,13 @@ TEST_F(Faults, MissingModules) {
   expect_error(
       run_command(folder, std::string("bin/atrium render room.yaml -o a.exr") + kSmallPicture), 1,
       "atrium_image_io.so");
+#ifdef ATRIUM_WITH_OPENSUBDIV
+  folder.write("cage.yaml",
+               "atrium: 1\nmaterials: {m: {body: 0.5}}\nobjects:\n"
+               "  - {name: c, material: m, cage: {box: {min: [0, 0, 0], max: [1, 1, 1]}}}\n");
+  expect_error(run_command(folder, "bin/atrium info cage.yaml"), 1, "atrium_subdivision.so");
+  std::filesystem::remove(folder / "cage.yaml");
+#endif
   // What needs none works all the same.
   EXPECT_EQ(
       run_command(folder, std::string("bin/atrium render room.yaml -o a.pfm") + kSmallPicture).code,
