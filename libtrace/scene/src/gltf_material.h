@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -13,9 +14,10 @@ namespace atrium::scene {
 /// The textures that materials use, decoded once per use (colour or data) and appended to a model.
 class GltfTextures {
  public:
-  /// Decodes everything that the document's materials name; failures become warnings.
+  /// Decodes everything that these of the document's materials name; failures become warnings.
   /// \throws RuntimeFailure  beyond the memory limit.
-  GltfTextures(const GltfDocument& document, Model& model, ModelBudget& budget);
+  GltfTextures(const GltfDocument& document, const std::set<int>& materials, Model& model,
+               ModelBudget& budget);
   /// Invalid if the texture was not named, or could not be decoded.
   [[nodiscard]] material::TextureId find(int texture, bool srgb) const;
 

@@ -62,8 +62,10 @@ material::Texture decode(const GltfDocument& document, int index, bool srgb) {
 
 }  // namespace
 
-GltfTextures::GltfTextures(const GltfDocument& document, Model& model, ModelBudget& budget) {
-  for (const tinygltf::Material& m : document.model.materials) {
+GltfTextures::GltfTextures(const GltfDocument& document, const std::set<int>& materials,
+                           Model& model, ModelBudget& budget) {
+  for (const int material : materials) {
+    const tinygltf::Material& m = document.model.materials[static_cast<std::size_t>(material)];
     const auto want = [&](int index, bool srgb) {
       if (index >= 0) ids_[{index, srgb}] = {};
     };

@@ -73,7 +73,7 @@ class Reader {
   void read();
 
  private:
-  void read_materials();
+  void read_materials(const std::vector<GltfPlacedNode>& placed);
   MaterialId material_id(int index);
   MeshId mesh_id(int mesh, std::size_t primitive);
   MeshData read_primitive(const tinygltf::Primitive& primitive, const std::string& where);
@@ -227,8 +227,25 @@ MeshId Reader::mesh_id(int mesh, std::size_t primitive) {
 
 // ---- materials ----
 
-void Reader::read_materials() {
-  const GltfTextures textures(document_, model_, budget_);
+/// Materials that something in the scene has; what others would need is not read.
+std::set<int> shown_materials(const tinygltf::Model& model,
+                              const std::vector<GltfPlacedNode>& placed) {
+  std::set<int> shown;
+  for (const GltfPlacedNode& p : placed) {
+    const int mesh = model.nodes[static_cast<std::size_t>(p.node)].mesh;
+    if (mesh < 0 || static_cast<std::size_t>(mesh) >= model.meshes.size()) continue;
+    for (const tinygltf::Primitive& primitive :
+         model.meshes[static_cast<std::size_t>(mesh)].primitives) {
+      const int m = primitive.material;
+      if (m >= 0 && static_cast<std::size_t>(m) < model.materials.size()) shown.insert(m);
+    }
+  }
+  return shown;
+}
+
+void Reader::read_materials(const std::vector<GltfPlacedNode>& placed) {
+  const GltfTextures textures(document_, shown_materials(document_.model, placed), model_,
+                              budget_);
   first_material_ = model_.materials.size();
   for (std::size_t i = 0; i < document_.model.materials.size(); ++i) {
     model_.materials.push_back(
@@ -361,12 +378,13 @@ void Reader::place_light(const tinygltf::Node& node, const Eigen::Affine3d& to_w
 void Reader::read() {
   for (const std::string& warning : document_.warnings) model_.warnings.push_back(warning);
   check_extensions(document_, model_);
-  read_materials();
-  for (const GltfPlacedNode& placed : gltf_placed_nodes(document_)) {
-    const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(placed.node)];
-    if (node.mesh >= 0) place_mesh(node, placed.to_world);
-    if (node.camera >= 0) place_camera(node, placed.to_world);
-    place_light(node, placed.to_world);
+  const std::vector<GltfPlacedNode> placed = gltf_placed_nodes(document_);
+  read_materials(placed);
+  for (const GltfPlacedNode& p : placed) {
+    const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(p.node)];
+    if (node.mesh >= 0) place_mesh(node, p.to_world);
+    if (node.camera >= 0) place_camera(node, p.to_world);
+    place_light(node, p.to_world);
   }
 }
 

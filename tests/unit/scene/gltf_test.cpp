@@ -535,6 +535,17 @@ TEST(GltfMaterial, MissingTextureLeavesTheFactor) {
   EXPECT_TRUE(warns(model, "texture 0 left out"));
 }
 
+// A file that is not there tells whether anybody looked for it.
+TEST(GltfMaterial, ImagesOfMaterialsThatNothingHasAreNotRead) {
+  const std::string materials =
+      R"(,"images":[{"uri":"none.png"}],"textures":[{"source":0}],"materials":[{"name":"plain"},{"name":"painted","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+  const Model unused = read_text(test::triangle_gltf(materials, R"(,"material":0)"));
+  EXPECT_EQ(unused.materials.size(), 2U);
+  EXPECT_FALSE(warns(unused, "texture 0 left out"));
+  EXPECT_TRUE(warns(read_text(test::triangle_gltf(materials, R"(,"material":1)")),
+                    "texture 0 left out"));
+}
+
 TEST(GltfMaterial, NothingGivenIsGreyNotAWhiteMetal) {
   const Model model = read_text(test::triangle_gltf());
   EXPECT_EQ(std::get<double>(model.materials.at(0).body_reflectance.value()), 0.5);
