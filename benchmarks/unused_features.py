@@ -12,6 +12,9 @@ is none: it mends meshes, which every scene uses):
     cmake --build build/without --target atrium
     benchmarks/unused_features.py build/release/bin/atrium --without build/without/bin/atrium
 
+What no option turns off is counted by its functions' share of the instructions of one run, what they call
+included.
+
 Also start-up: processor time of the process before a scene is read, over 50 runs. Instructions do
 not depend on what else runs on the machine.
 """
@@ -81,6 +84,14 @@ FEATURES = [
     ("path: a checkpoint that is not taken up", PATH, {}, "--checkpoint kept", {}, ""),
 ]
 
+# What no option turns off: name, function, command.
+STAGES = [
+    ("photons for the flux balance, nothing specular", "trace_photons", HYBRID),
+    ("choice of hot patches", "choose_hot", HYBRID),
+    ("importance of a view that sees every wall", "view_importance", HYBRID),
+    ("search for lamps smaller than a pixel, none", "SmallLamps::SmallLamps", DIRECT),
+]
+
 
 def instructions(command, folder):
     run = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind.out"]
@@ -102,6 +113,18 @@ def measure(atrium, folder, template, room, options):
     (pathlib.Path(folder) / "room.yaml").write_text(room)
     command = [atrium] + template.split() + options.split()
     return instructions(command, folder), resident_mb(command, folder)
+
+
+def share_of(atrium, folder, template, function):
+    """Instructions of a function and what it calls, in a run of the plain room; the outermost where it
+    calls others of that name."""
+    (pathlib.Path(folder) / "room.yaml").write_text(room({}))
+    whole = instructions([atrium] + template.split(), folder)
+    listing = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", f"{folder}/callgrind.out"],
+                             capture_output=True, text=True, check=True).stdout
+    counts = [int(line.split("(")[0].replace(",", "")) for line in listing.splitlines()
+              if function in line and re.match(r"\s*[\d,]+ \(", line)]
+    return max(counts, default=0) / whole
 
 
 def room(parts):
@@ -170,6 +193,10 @@ def main():
             for method, template in (("direct", DIRECT), ("hybrid", HYBRID), ("path", PATH)):
                 failed |= row(f"{method}: {left_out(arguments.atrium, other)} in the build",
                               *(measure(p, folder, template, room({}), "") for p in (arguments.atrium, other)))
+        print("\n| without an option | share of instructions |\n| --- | --- |")
+        for name, function, template in STAGES:
+            if arguments.only in name:
+                print(f"| {name} | {100 * share_of(arguments.atrium, folder, template, function):.2f} % |", flush=True)
     return 1 if failed else 0
 
 

@@ -55,11 +55,15 @@ TEST(SmallLamps, CoverTheirShareOfAPixel) {
     SCOPED_TRACE(edge);
     const scene::Scene s = lamps_at({{0.05, 0.07}}, edge);
     const double share = std::pow(8.0 * edge, 2.0);
-    for (const auto kind : {scene::Camera::Kind::Perspective, scene::Camera::Kind::Orthographic})
+    for (const auto kind : {scene::Camera::Kind::Perspective, scene::Camera::Kind::Orthographic}) {
       for (const Method method : {Method::Path, Method::Hybrid, Method::Direct}) {
         const Picture p = picture(s, camera_of(kind), options_of(method, 4));
         EXPECT_NEAR(filled(p) / share, 1.0, 0.05);
       }
+      RenderOptions o = options_of(Method::Path, 4);
+      o.paths = PathKind::BothEnds;
+      EXPECT_NEAR(filled(picture(s, camera_of(kind), o)) / share, 1.0, 0.05);
+    }
   }
 }
 

@@ -17,7 +17,7 @@ SCENES = {
     "mirror_atrium": 20000,
     "office_floor": 60000,
 }
-EFFORT = "--errors 0.1 0.05 0.02 --scales 1 --paths 64 256 --receivers 300 --reference-rays 1e7".split()
+EFFORT = "--errors 0.1 0.05 0.02 --scales 1 --paths 64 256 --receivers 300 --reference-rays 5e7".split()
 OPTIONS = [*EFFORT, "--shooting", 0]
 # Shooting needs a scene that it can finish.
 SMALL = ["small_room@2000", *EFFORT, *"--shooting 0.2 0.05 0.01 --shooting-elements 1500".split()]
