@@ -63,7 +63,7 @@ std::optional<Barrier> within_triangle(const std::array<Vec3f, 3>& triangle,
     if (slope < 0.0) high = std::min(high, -at / slope);
   }
   if (!(low < high)) return std::nullopt;
-  return Barrier{barrier.a + low * d, barrier.a + high * d, barrier.wall};
+  return Barrier{barrier.a + low * d, barrier.a + high * d, barrier.wall, barrier.object};
 }
 
 struct BarrierFinder::Impl {
@@ -112,7 +112,7 @@ std::vector<Barrier> BarrierFinder::on(scene::ObjectId object, std::uint32_t tri
       high = std::max(high, (q - p).dot(d));
     }
     const auto [first, last] = inside(c, n, p, d, low, high);
-    if (last > first) result.push_back({p + first * d, p + last * d});
+    if (last > first) result.push_back({p + first * d, p + last * d, true, item.object});
   }
   return result;
 }
@@ -145,7 +145,7 @@ std::vector<Barrier> BarrierFinder::outlines_above(scene::ObjectId object, std::
   std::vector<Barrier> outlines;
   for (const OpenEdges::Edge& e : open) {
     if (!large.contains(e.object.value)) continue;
-    const Barrier edge{e.a - height(e.a) * n, e.b - height(e.b) * n, false};
+    const Barrier edge{e.a - height(e.a) * n, e.b - height(e.b) * n, false, e.object};
     if (const auto part = within_triangle(corners, edge)) outlines.push_back(*part);
   }
   return outlines;

@@ -14,7 +14,8 @@ namespace atrium::radiosity {
 /// it.
 struct Barrier {
   Vec3d a, b;
-  bool wall = true;  ///< false: nothing stands there, but elements end
+  bool wall = true;        ///< false: nothing stands there, but elements end
+  scene::ObjectId object;  ///< that ends here; not valid: none
 };
 
 /// The part of a barrier within a triangle in whose plane it lies, if it is more than a point.

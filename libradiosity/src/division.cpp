@@ -26,7 +26,7 @@ constexpr std::size_t kMostFree = 64;   // of one facet; more stay as they are
 constexpr double kOutlineLength = 0.1;  // cells; shorter pieces of covers' outlines cut nothing
 constexpr double kHang = 0.75;          // cells; what hangs lower keeps light from what is below
 constexpr double kHangLength = 1.0;     // cells; the longest edge of what hangs, at least
-constexpr std::size_t kMostBarriers = 4096;  // of one facet; grass on a lawn divides nothing
+constexpr std::size_t kMostBarriers = 4096;  // of one facet; of large objects first
 
 /// A corner, and which line the edge to the next one lies on.
 struct Vertex {
@@ -76,7 +76,8 @@ class Divider {
 
   Division divide() {
     find_barriers();
-    if (barriers_.empty() || barriers_.size() > kMostBarriers) return {};
+    keep_large();
+    if (barriers_.empty()) return {};
     number_edges();
     cut_triangles();
     connect();
@@ -102,8 +103,50 @@ class Divider {
            finder_.outlines_above(object_, t, kHang * cell_, kHangLength * cell_))
         if ((b.b - b.a).norm() > tolerance_) barriers_.push_back(b);
       first_.push_back(barriers_.size());
-      if (barriers_.size() > kMostBarriers) return;
     }
+  }
+
+  /// Too many barriers are those of many small things: chairs in an office, grass on a lawn. What
+  /// stands there with the longest edges divides; of what does not fit only long edges do.
+  void keep_large() {
+    if (barriers_.size() <= kMostBarriers) return;
+    const auto length = [&](std::size_t i) { return (barriers_[i].b - barriers_[i].a).norm(); };
+    struct Thing {
+      double longest = 0.0;
+      std::vector<std::size_t> barriers;
+    };
+    std::map<scene::ObjectId, Thing> by_object;
+    for (std::size_t i = 0; i < barriers_.size(); ++i) {
+      Thing& thing = by_object[barriers_[i].object];
+      thing.longest = std::max(thing.longest, length(i));
+      thing.barriers.push_back(i);
+    }
+    std::vector<Thing> things;
+    for (auto& [object, thing] : by_object) things.push_back(std::move(thing));
+    std::stable_sort(things.begin(), things.end(),
+                     [](const Thing& x, const Thing& y) { return x.longest > y.longest; });
+    std::vector<bool> kept(barriers_.size(), false);
+    std::size_t left = kMostBarriers;
+    for (Thing& thing : things) {
+      if (thing.barriers.size() > left) {
+        std::erase_if(thing.barriers,
+                      [&](std::size_t i) { return length(i) < kFreeLength * cell_; });
+        std::stable_sort(thing.barriers.begin(), thing.barriers.end(),
+                         [&](std::size_t i, std::size_t j) { return length(i) > length(j); });
+        thing.barriers.resize(std::min(thing.barriers.size(), left));
+      }
+      for (const std::size_t i : thing.barriers) kept[i] = true;
+      left -= thing.barriers.size();
+    }
+    std::vector<Barrier> large;
+    std::vector<std::size_t> first{0};
+    for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
+      for (std::size_t i = first_[t]; i < first_[t + 1]; ++i)
+        if (kept[i]) large.push_back(barriers_[i]);
+      first.push_back(large.size());
+    }
+    barriers_ = std::move(large);
+    first_ = std::move(first);
   }
 
   /// An edge of a fragment that lies on a line.
@@ -166,11 +209,11 @@ class Divider {
       const Vec3d along = cell_ * (w.b - w.a).normalized();
       const Vec3d across = facet_.normal.cross(along);
       const Vec3d a = w.a - along, b = w.b + along;
-      fences.push_back({a, b, false});
-      fences.push_back({a - across, b - across, false});
-      fences.push_back({a + across, b + across, false});
-      fences.push_back({a - across, a + across, false});
-      fences.push_back({b - across, b + across, false});
+      fences.push_back({a, b, false, {}});
+      fences.push_back({a - across, b - across, false, {}});
+      fences.push_back({a + across, b + across, false, {}});
+      fences.push_back({a - across, a + across, false, {}});
+      fences.push_back({b - across, b + across, false, {}});
     }
     std::vector<Barrier> all;
     std::vector<std::size_t> first{0};

@@ -167,6 +167,36 @@ TEST_P(Leaks, InterpolationStopsAtTheWall) {
   EXPECT_NEAR(sum, expected, 0.01 * expected);
 }
 
+// Chairs by the hundred stand on a floor: there are more borders on it than divide one, and the
+// wall's must be among those that do.
+TEST(LeaksOfMany, NoneWhereManyThingsStand) {
+  const Partition wall_and_things = [](SceneMaker& maker, scene::MaterialId m) {
+    for (int i = 0; i < 1200; ++i) {
+      const Vec3f at(-1.9f + 0.045f * static_cast<float>(i % 40),
+                     0.05f + 0.095f * static_cast<float>(i / 40), 0.0f);
+      add_box(maker, m, {at, at + Vec3f::Constant(0.02f)});
+    }
+    add_box(maker, m, wall(0.1f, kFar));
+  };
+  const Solved s(test::two_rooms(wall_and_things), {.element_size = 0.25, .direct_samples = 32});
+  double brightest_dark = 0.0, lit = 0.0, area = 0.0;
+  for (std::size_t e = 0; e < s.count(); ++e)
+    for (const int side : {0, 1}) {
+      const Vec3f p = beside(s, e, side);
+      if (!kLeft.contains(p)) {
+        brightest_dark = std::max(brightest_dark, s.total(e, side));
+        continue;
+      }
+      lit += s.area(e) * s.total(e, side);
+      area += s.area(e);
+    }
+  for (int i = 0; i < 20; ++i) {
+    const Vec3f dark(kWall + 0.11f, 0.15f * (static_cast<float>(i) + 0.5f), 1.0f);
+    brightest_dark = std::max(brightest_dark, look(s, dark, {0, 0, -1}));
+  }
+  EXPECT_LT(brightest_dark, 1e-6 * lit / area);
+}
+
 // A door that leaves a slit of 5 cm. The shell runs through both rooms, or is cut at the wall.
 scene::Scene door_ajar(bool through) {
   SceneMaker maker;
