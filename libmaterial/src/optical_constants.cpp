@@ -75,6 +75,7 @@ SampledSpectrum extinction_of(const OpticalConstants& constants) {
 
 std::vector<std::pair<std::string, std::string>> optical_constants_aliases() {
   std::vector<std::pair<std::string, std::string>> aliases;
+  aliases.reserve(std::size(kEnglishNames));
   for (const auto& [english, symbol] : kEnglishNames) aliases.emplace_back(english, symbol);
   return aliases;
 }

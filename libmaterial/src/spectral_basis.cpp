@@ -47,7 +47,8 @@ std::vector<double> halved(const std::vector<double>& edges) {
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     double best = 0.0;
     double least = std::numeric_limits<double>::infinity();
-    for (double cut = edges[i] + 1.0; cut < edges[i + 1]; cut += 1.0) {
+    for (int nm = 1; edges[i] + nm < edges[i + 1]; ++nm) {
+      const double cut = edges[i] + nm;
       const double left = overlap(edges[i], cut).dot(weight);
       const double right = overlap(cut, edges[i + 1]).dot(weight);
       if (std::abs(left - right) >= least) continue;

@@ -115,13 +115,14 @@ class Divider {
       double longest = 0.0;
       std::vector<std::size_t> barriers;
     };
-    std::map<scene::ObjectId, Thing> by_object;
+    std::map<std::uint32_t, Thing> by_object;
     for (std::size_t i = 0; i < barriers_.size(); ++i) {
-      Thing& thing = by_object[barriers_[i].object];
+      Thing& thing = by_object[barriers_[i].object.value];
       thing.longest = std::max(thing.longest, length(i));
       thing.barriers.push_back(i);
     }
     std::vector<Thing> things;
+    things.reserve(by_object.size());
     for (auto& [object, thing] : by_object) things.push_back(std::move(thing));
     std::stable_sort(things.begin(), things.end(),
                      [](const Thing& x, const Thing& y) { return x.longest > y.longest; });

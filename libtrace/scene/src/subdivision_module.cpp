@@ -166,7 +166,7 @@ class Tolerance {
 template <class Place>
 double grid_error(int rate, bool triangle, const Tolerance& tolerance, const Place& place) {
   const int fine = 2 * rate;
-  const auto stride = static_cast<std::size_t>(fine + 1);
+  const std::size_t stride = static_cast<std::size_t>(fine) + 1;
   std::vector<Vec3d> grid(stride * stride, Vec3d::Zero());
   const auto at = [&](int i, int j) -> Vec3d& {
     return grid[static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i)];
@@ -294,8 +294,9 @@ class LimitMesh {
 
  private:
   [[nodiscard]] std::vector<int> rates_of(int face, const Rates& rates) const {
-    std::vector<int> result;
     const osd::Far::ConstIndexArray edges = level_.GetFaceEdges(face);
+    std::vector<int> result;
+    result.reserve(static_cast<std::size_t>(edges.size()) + 2);
     for (int i = 0; i < edges.size(); ++i) {
       result.push_back(rates.edge[static_cast<std::size_t>(edges[i])]);
     }
