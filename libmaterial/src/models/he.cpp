@@ -39,21 +39,23 @@ double poisson_deviance(double m, double g) {
 
 // Outward from the largest term; the logarithm of the summand is concave in m.
 double direct_sum(double g, double B, double mode) {
-  const int start = std::max(1, static_cast<int>(mode + 0.5));
+  const int start = std::max(1, static_cast<int>(std::lround(mode)));
   const double first = start * std::log(g) - g - B / start -
                        std::log(kFactorial[static_cast<std::size_t>(start)] * start);
   if (first < kLogMin) return 0.0;
   constexpr double negligible = 1e-17;
   double sum = 1.0;
   double term = 1.0;
-  for (double m = start;; m += 1.0) {
+  for (int k = start;; ++k) {
+    const double m = k;
     const double ratio = g * m / ((m + 1.0) * (m + 1.0)) * std::exp(B / (m * (m + 1.0)));
     term *= ratio;
     sum += term;
     if (ratio < 1.0 && term < negligible * sum) break;
   }
   term = 1.0;
-  for (double m = start; m > 1.5; m -= 1.0) {
+  for (int k = start; k > 1; --k) {
+    const double m = k;
     const double ratio = m * m / (g * (m - 1.0)) * detail::exp_minus(B / (m * (m - 1.0)));
     term *= ratio;
     sum += term;
@@ -74,7 +76,9 @@ double trapezoidal_sum(double g, double B, double mode) {
   if (peak < kLogMin) return 0.0;
   double sum = 1.0;
   for (const double direction : {1.0, -1.0}) {
-    for (double m = mode + direction * step; m >= 1.0; m += direction * step) {
+    for (int k = 1;; ++k) {
+      const double m = mode + direction * step * k;
+      if (!(m >= 1.0)) break;
       const double term = std::exp(log_summand(m, g, B) - peak);
       sum += term;
       if (term < 1e-17) break;
