@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
+#include "barrier_directions.h"
 #include "open_edges.h"
 #include "polygon.h"
 
@@ -337,6 +339,7 @@ class Divider {
   void connect() {
     parent_.resize(fragments_.size());
     std::iota(parent_.begin(), parent_.end(), 0U);
+    directions_.emplace(barriers_, facet_.axis, facet_.normal, 4.0 * tolerance_);
     std::vector<std::vector<Use>>& uses = uses_;
     uses.assign(lines_.size(), {});
     for (std::uint32_t f = 0; f < fragments_.size(); ++f) {
@@ -373,7 +376,10 @@ class Divider {
     const auto off = [&](const Vec3d& p) {
       return (p - line.point - along(line, p) * line.direction).norm();
     };
-    for (const Barrier& b : barriers_) {
+    std::vector<std::uint32_t> parallel;
+    directions_->along(line.direction, parallel);
+    for (const std::uint32_t i : parallel) {
+      const Barrier& b = barriers_[i];
       if (walls_only && !b.wall) continue;
       if (off(b.a) > 4.0 * tolerance_ || off(b.b) > 4.0 * tolerance_) continue;
       all.push_back(std::minmax(along(line, b.a), along(line, b.b)));
@@ -475,6 +481,7 @@ class Divider {
   Vec3d normal_ = Vec3d::UnitZ();  // of the triangle being cut
   std::vector<Barrier> barriers_;
   std::vector<std::size_t> first_;  // barrier of each triangle
+  std::optional<BarrierDirections> directions_;  // of the barriers
   std::map<EdgeKey, std::uint32_t> edge_line_;
   std::vector<Line> lines_;
   std::vector<Fragment> fragments_;
