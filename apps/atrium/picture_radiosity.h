@@ -24,7 +24,7 @@ class PictureRadiosity {
   [[nodiscard]] const std::vector<Pack>& packs() const { return packs_; }
   /// RenderOptions::field_share: solving again costs less than a picture that makes up for it.
   [[nodiscard]] double field_share() const { return may_refine() ? 0.5 : 1.0; }
-  /// How often that was done in this run.
+  /// How often this run has solved again.
   [[nodiscard]] int refinements() const { return refinements_; }
   /// Solves again on more elements and to a smaller error, for a picture whose field_error is too
   /// large. \return  false: not possible, or tried often enough; nothing has changed.
