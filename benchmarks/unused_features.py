@@ -115,16 +115,21 @@ def measure(atrium, folder, template, room, options):
     return instructions(command, folder), resident_mb(command, folder)
 
 
-def share_of(atrium, folder, template, function):
-    """Instructions of a function and what it calls, in a run of the plain room; the outermost where it
-    calls others of that name."""
+@functools.cache
+def inclusive(atrium, folder, template):
+    """Of a run of the plain room: all instructions, and a list of (those of a function and what it calls, its name)."""
     (pathlib.Path(folder) / "room.yaml").write_text(room({}))
     whole = instructions([atrium] + template.split(), folder)
     listing = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", f"{folder}/callgrind.out"],
                              capture_output=True, text=True, check=True).stdout
-    counts = [int(line.split("(")[0].replace(",", "")) for line in listing.splitlines()
-              if function in line and re.match(r"\s*[\d,]+ \(", line)]
-    return max(counts, default=0) / whole
+    return whole, [(int(count.replace(",", "")), name)
+                   for count, name in re.findall(r"^ *([\d,]+) \([^)]*\)(.*)$", listing, re.M)]
+
+
+def share_of(atrium, folder, template, function):
+    """Share of a function and what it calls; of the outermost where it calls others of that name."""
+    whole, functions = inclusive(atrium, folder, template)
+    return max((count for count, name in functions if function in name), default=0) / whole
 
 
 def room(parts):

@@ -15,14 +15,8 @@ namespace {
 
 const PlotModule& module() {
 #ifdef ATRIUM_WITH_VTK
-  static const PlotModule* const loaded = [] {
-    const auto entry =
-        reinterpret_cast<PlotEntry>(scene::load_module("atrium_plot.so", "atrium_plot"));
-    const PlotModule* m = entry(kPlotInterface);
-    if (m == nullptr) throw RuntimeFailure("atrium_plot.so belongs to another version");
-    return m;
-  }();
-  return *loaded;
+  static const PlotModule& loaded = scene::load_module<PlotEntry>("atrium_plot", kPlotInterface);
+  return loaded;
 #else
   throw RuntimeFailure("plots cannot be drawn: this build is without VTK");
 #endif

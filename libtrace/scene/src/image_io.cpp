@@ -41,7 +41,7 @@ class Loader {
   void load() {
     try {
 #ifdef ATRIUM_WITH_OPENIMAGEIO
-      module_ = &load_interface<ImageIoEntry>("atrium_image_io");
+      module_ = &load_module<ImageIoEntry>("atrium_image_io", kModuleInterface);
 #else
       problem_ = "this build is without OpenImageIO";
 #endif

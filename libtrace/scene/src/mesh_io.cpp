@@ -15,7 +15,7 @@ namespace {
 
 const MeshIoModule& module() {
 #ifdef ATRIUM_WITH_VTK
-  static const MeshIoModule& loaded = load_interface<MeshIoEntry>("atrium_mesh_io");
+  static const MeshIoModule& loaded = load_module<MeshIoEntry>("atrium_mesh_io", kModuleInterface);
   return loaded;
 #else
   throw RuntimeFailure("mesh files cannot be used: this build is without VTK");

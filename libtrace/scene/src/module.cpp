@@ -23,7 +23,7 @@ std::vector<fs::path>& added_folders() {
 /// Folder of the shared object (or program) that this code is linked into.
 fs::path own_folder() {
   Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&load_module), &info) == 0 || !info.dli_fname) {
+  if (::dladdr(reinterpret_cast<const void*>(&module_entry), &info) == 0 || !info.dli_fname) {
     return {};
   }
   std::error_code ec;
@@ -56,7 +56,8 @@ void add_module_folder(const fs::path& folder) {
   added_folders().insert(added_folders().begin(), folder);
 }
 
-void* load_module(const std::string& file_name, const char* entry_point) {
+void* module_entry(const std::string& name) {
+  const std::string file_name = name + ".so";
   std::string searched;
   for (const fs::path& folder : search_folders()) {
     const fs::path file = (folder / file_name).lexically_normal();
@@ -68,7 +69,7 @@ void* load_module(const std::string& file_name, const char* entry_point) {
     void* handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr)
       throw RuntimeFailure(file.string() + ": cannot be loaded: " + ::dlerror());
-    void* entry = ::dlsym(handle, entry_point);
+    void* entry = ::dlsym(handle, name.c_str());
     if (entry == nullptr) throw RuntimeFailure(file.string() + ": is no module of this program");
     return entry;
   }

@@ -244,8 +244,7 @@ std::set<int> shown_materials(const tinygltf::Model& model,
 }
 
 void Reader::read_materials(const std::vector<GltfPlacedNode>& placed) {
-  const GltfTextures textures(document_, shown_materials(document_.model, placed), model_,
-                              budget_);
+  const GltfTextures textures(document_, shown_materials(document_.model, placed), model_, budget_);
   first_material_ = model_.materials.size();
   for (std::size_t i = 0; i < document_.model.materials.size(); ++i) {
     model_.materials.push_back(

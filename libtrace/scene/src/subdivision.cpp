@@ -63,7 +63,7 @@ MeshData tessellate(const MeshData& cage_mesh, double max_error, const Eigen::Af
   check_cage(cage_mesh);
 #ifdef ATRIUM_WITH_OPENSUBDIV
   static const SubdivisionModule& module =
-      load_interface<SubdivisionEntry>("atrium_subdivision");
+      load_module<SubdivisionEntry>("atrium_subdivision", kModuleInterface);
   MeshData mesh;
   const std::string problem = module.tessellate(cage_mesh, max_error, to_world, view, mesh);
   if (!problem.empty()) throw Error(name_of(cage_mesh) + ": " + problem);
