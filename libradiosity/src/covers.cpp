@@ -77,7 +77,8 @@ std::vector<Barrier> Covers::outlines_on(scene::ObjectId object, std::uint32_t t
   }
   std::vector<Barrier> outlines;
   for (const OpenEdges::Edge& e : edges.list())
-    if (const auto part = within_triangle(corners, {e.a, e.b, false, e.object})) outlines.push_back(*part);
+    if (const auto part = within_triangle(corners, {e.a, e.b, false, e.object}))
+      outlines.push_back(*part);
   return outlines;
 }
 

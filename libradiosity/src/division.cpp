@@ -480,7 +480,7 @@ class Divider {
   double cell_, tolerance_ = 0.0;
   Vec3d normal_ = Vec3d::UnitZ();  // of the triangle being cut
   std::vector<Barrier> barriers_;
-  std::vector<std::size_t> first_;  // barrier of each triangle
+  std::vector<std::size_t> first_;               // barrier of each triangle
   std::optional<BarrierDirections> directions_;  // of the barriers
   std::map<EdgeKey, std::uint32_t> edge_line_;
   std::vector<Line> lines_;

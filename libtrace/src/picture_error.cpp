@@ -11,7 +11,7 @@ namespace atrium::trace {
 namespace {
 
 constexpr double kCertain = 3.0;  // standard errors; the question is asked in every round
-constexpr int kReach = 2;  // of the squares that bias is averaged over [pixels]
+constexpr int kReach = 2;         // of the squares that bias is averaged over [pixels]
 
 double square(double v) { return v * v; }
 

@@ -9,10 +9,10 @@
 namespace atrium::trace {
 namespace {
 
-constexpr double kWidest = 1.0;     // [pixels] across a small lamp, along rows and columns
-constexpr std::size_t kParts = 4;   // of a pixel
-constexpr float kFilled = 0.5f;     // of a pixel: camera rays meet these lamps often enough
-constexpr double kMargin = 0.001;   // of a lamp's outline, for what is rounded
+constexpr double kWidest = 1.0;    // [pixels] across a small lamp, along rows and columns
+constexpr std::size_t kParts = 4;  // of a pixel
+constexpr float kFilled = 0.5f;    // of a pixel: camera rays meet these lamps often enough
+constexpr double kMargin = 0.001;  // of a lamp's outline, for what is rounded
 
 /// Where on the film [pixels]; nullopt where the picture does not show all of it.
 std::optional<Eigen::AlignedBox2d> outline(const Eye& eye, const std::array<Vec3f, 3>& corners) {
@@ -26,7 +26,8 @@ std::optional<Eigen::AlignedBox2d> outline(const Eye& eye, const std::array<Vec3
   return box;
 }
 
-/// Does the triangle show its emitting side? Where that can hardly be told it shows next to nothing.
+/// Does the triangle show its emitting side? Where that can hardly be told it shows next to
+/// nothing.
 bool faces_eye(const scene::Scene& scene, const scene::EmissiveTriangle& t, const Eye& eye) {
   if (scene.material_of(t.object).emits_both_sides) return true;
   const scene::SurfacePoint p =

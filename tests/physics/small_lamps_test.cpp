@@ -82,8 +82,8 @@ TEST(SmallLamps, InAPanorama) {
 // Half of a lamp's light at the border of two pixels and a quarter where four meet; none is lost.
 TEST(SmallLamps, BetweenPixels) {
   const scene::Scene s = lamps_at({{0.0, 0.0}, {0.5, 0.0625}}, 0.02);
-  const Picture p = picture(s, camera_of(scene::Camera::Kind::Orthographic),
-                            options_of(Method::Path, 4));
+  const Picture p =
+      picture(s, camera_of(scene::Camera::Kind::Orthographic), options_of(Method::Path, 4));
   const double share = 0.16 * 0.16;
   EXPECT_NEAR(filled(p) / (2.0 * share), 1.0, 0.05);
   const scene::Image& image = p.result.image;

@@ -50,8 +50,7 @@ TEST(BarrierDirections, OthersAreLeftOut) {
   std::vector<Barrier> barriers;
   for (int i = 0; i < 1000; ++i) {
     const double angle = 0.001 * std::numbers::pi * i;
-    barriers.push_back(
-        {Vec3d::Zero(), Vec3d(std::cos(angle), std::sin(angle), 0.0), true, {}});
+    barriers.push_back({Vec3d::Zero(), Vec3d(std::cos(angle), std::sin(angle), 0.0), true, {}});
   }
   const BarrierDirections directions(barriers, Vec3d::UnitX(), Vec3d::UnitZ(), kTolerance);
   std::vector<std::uint32_t> found;
