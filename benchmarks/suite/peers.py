@@ -140,30 +140,55 @@ class PovRay:
         )[0]
 
 
+def radiance_folder():
+    """Of the package pyradiance, which has Radiance's programs and function files."""
+    spec = importlib.util.find_spec("pyradiance")
+    return pathlib.Path(spec.origin).parent if spec else None
+
+
 class Radiance:
-    """A budget is the number of ambient divisions; six ambient bounces."""
+    """A budget is the number of ambient divisions; accuracy, resolution and bounces rise with it. Nine rays of a
+    pixel, averaged by pfilt."""
 
     name, ending, unit = "Radiance, rpict", ".rad", "-ad"
-    budgets = [256, 1024, 4096]
+    others = {
+        64: "-as 16 -aa 0.25 -ar 32 -ab 4",
+        256: "-as 64 -aa 0.2 -ar 64 -ab 8",
+        1024: "-as 256 -aa 0.1 -ar 128 -ab 12",
+    }
+    budgets = list(others)
+    finer = 3
     write = staticmethod(peer_scenes.radiance)
     knows = {peer_scenes.Diffuse}
 
+    def __init__(self):
+        folder = radiance_folder()
+        self.environment = (
+            {"PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "RAYPATH": str(folder / "lib")}
+            if folder and not shutil.which("rpict")
+            else {}
+        )
+
     def missing(self):
-        return "" if shutil.which("rpict") and shutil.which("oconv") else "no programs rpict and oconv"
+        path = self.environment.get("PATH")
+        lacking = [name for name in ("oconv", "rpict", "pfilt") if not shutil.which(name, path=path)]
+        return f"no Python module pyradiance and no program {lacking[0]}" if lacking else ""
 
     def version(self):
-        return machine.first_line(["rpict", "-version"])
+        _, text = program.run(["sh", "-c", "rpict -version"], environment=self.environment)
+        return text.strip()
 
     def render(self, file, scene, budget, _seed, out):
         octree, picture = file.with_suffix(".oct"), out.with_suffix(".hdr")
-        view = " ".join(str(w) for w in peer_scenes.radiance_view(scene, SIZE))
+        view = " ".join(str(w) for w in peer_scenes.radiance_view(scene, [self.finer * n for n in SIZE]))
         cost, _ = program.run(
             [
                 "sh",
                 "-c",
-                f"oconv '{file}' > '{octree}' && rpict {view} -ab 6 -ad {budget} -as {budget // 4} "
-                f"-aa 0.1 -ar 128 -lw 1e-4 -ds 0.05 -dj 0.9 '{octree}' > '{picture}'",
-            ]
+                f"oconv '{file}' > '{octree}' && rpict -w- {view} -ps 1 -ad {budget} {self.others[budget]} -lr 20 "
+                f"-lw 1e-6 -ds 0.1 -dj 0.9 '{octree}' | pfilt -1 -x /{self.finer} -y /{self.finer} > '{picture}'",
+            ],
+            environment=self.environment,
         )
         return cost
 

@@ -216,6 +216,7 @@ class Exporter {
   void add_names() {
     const auto names = [](const auto& things) {
       std::vector<std::string> list;
+      list.reserve(things.size());
       for (const auto& thing : things) list.push_back(thing.name);
       return list;
     };

@@ -86,7 +86,7 @@ void JoinedField<N>::share_corners() {
 template <int N>
 void JoinedField<N>::add_source(const Quantities& irradiance, const Quantities& body,
                                 double factor) {
-  const std::size_t size = 2 * N * field_.element_count();
+  const std::size_t size = 2 * std::size_t{N} * field_.element_count();
   Source s;
   s.elements = {scaled(irradiance, factor, size), scaled(body, factor, size)};
   const auto at_corners = [&](const Quantities& q) {

@@ -148,7 +148,7 @@ class SideProperties {
     if (near.empty()) return true;
     constexpr std::uint32_t kPoints = 4;
     for (std::uint32_t k = 0; k < kPoints; ++k) {
-      scene::Sampler sampler(seed_ ^ 0x1175U, streams_[2 * element], k);
+      scene::Sampler sampler(seed_ ^ 0x1175U, streams_[2 * std::size_t{element}], k);
       const SurfacePoint p = points_.sample(element, sampler.next_2d());
       if (lit_.contains(scene::offset_origin(p, normal_of(side, p.ng)), near)) return true;
     }
@@ -192,12 +192,12 @@ void find_covers(const scene::Scene& scene, const Covers& covers, const Elements
   constexpr std::uint32_t kPoints = 4;
   sides.cover.assign(sides.is_active.size(), kNoSide);
   scene::parallel_for(sides.is_active.size() / 2, 256, [&](std::size_t begin, std::size_t end) {
-    for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+    for (std::size_t e = begin; e < end; ++e) {
       if (sides.is_active[2 * e] == 0 && sides.is_active[2 * e + 1] == 0) continue;
       std::uint32_t count = 0;
       for (std::uint32_t k = 0; k < kPoints && k < count + 2; ++k) {
         scene::Sampler sampler(seed ^ 0xc0feU, streams[2 * e], k);
-        const SurfacePoint p = points.sample(e, sampler.next_2d());
+        const SurfacePoint p = points.sample(static_cast<std::uint32_t>(e), sampler.next_2d());
         const auto cover = covers.of(p);
         if (!cover) continue;
         const std::uint32_t other =

@@ -9,8 +9,8 @@
 namespace atrium::trace {
 namespace {
 
-constexpr double kFewest = 12.0, kMost = 800.0;  // regions of a picture
-constexpr double kUncertain = 0.1;               // of the rest of e^2
+constexpr int kFewest = 12, kMost = 800;  // regions of a picture
+constexpr double kUncertain = 0.1;        // of the rest of e^2
 
 /// Sums over the pixels of one region.
 struct Region {
@@ -23,7 +23,7 @@ struct Region {
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t a = 0; a < kReplicates; ++a)
         for (std::size_t b = a + 1; b < kReplicates; ++b) sum += missed[a][c] * missed[b][c];
-    constexpr double kPairs = kReplicates * (kReplicates - 1) / 2;
+    constexpr double kPairs = 0.5 * kReplicates * (kReplicates - 1);
     return sum / (3.0 * kPairs * pixels * pixels);
   }
 };
@@ -63,7 +63,7 @@ FieldSquare mean_of(const std::vector<Region>& regions, double area) {
 FieldSquare field_square(const PictureSamples& s, const std::vector<double>& scale, double other) {
   FieldSquare found;
   const double area = static_cast<double>(s.width) * static_cast<double>(s.height);
-  for (double regions = kFewest; regions <= kMost; regions *= 4.0) {
+  for (int regions = kFewest; regions <= kMost; regions *= 4) {
     const int edge = std::max(1, static_cast<int>(std::lround(std::sqrt(area / regions))));
     const FieldSquare finer = mean_of(regions_of(s, scale, edge), area);
     if (regions > kFewest && finer.error > kUncertain * other) break;

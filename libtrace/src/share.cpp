@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "scene/parallel.h"
+#include "share_weights.h"
 
 namespace atrium::trace {
 namespace {
 
-constexpr int kLevels = 5;         // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
-constexpr float kNothing = 32.0f;  // unlikeness from which on a neighbour's light is none
-constexpr float kErrors = 3.0f;    // standard errors of a difference that noise may explain
-constexpr float kPlane = 0.1f;     // tangent of the slope that counts as the same surface
+constexpr int kLevels = 5;  // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
 constexpr std::array<float, 3> kSpline{0.375f, 0.25f, 0.0625f};  // B3
 
 template <class F>
@@ -81,8 +79,16 @@ Illumination unpack(const Levels& levels) {
 /// receive), so it is found once: by the pixel that comes first.
 class Level {
  public:
-  Level(const ShareGuides& guides, const Levels& in, int step)
-      : g_(guides), in_(in), step_(step), noise_(blurred_variance()) {}
+  /// \param planes  of the guides; noise and luminance become those of this level.
+  Level(const ShareGuides& guides, const Levels& in, int step, WeightPlanes& planes)
+      : g_(guides), in_(in), step_(step), planes_(planes) {
+    planes.noise = blurred_variance();
+    for (std::size_t h = 0; h < 2; ++h) {
+      planes.luminance[h].resize(in.light.size());
+      for (std::size_t i = 0; i < in.light.size(); ++i)
+        planes.luminance[h][i] = in.light[i][h].guide[3];
+    }
+  }
 
   /// Rows that are `step` apart see only each other: each such strip is done piece by piece.
   void run(Levels& out) const {
@@ -111,8 +117,8 @@ class Level {
   struct Piece {
     int residue, rows, first, end;
   };
-  using Weights = std::array<float, 2>;                        // by guiding half
-  using Row = std::vector<std::array<Weights, kTaps.size()>>;  // by x
+  using Weights = std::array<float, 2>;                                     // by guiding half
+  using Row = std::array<std::array<std::vector<float>, 2>, kTaps.size()>;  // by guiding half and x
 
   static float spline(const Tap& tap) {
     return kSpline[static_cast<std::size_t>(std::abs(tap.dx))] *
@@ -133,18 +139,15 @@ class Level {
 
   /// Weights between the pixels of a row and those that come after them.
   void find_pairs(const Piece& p, int row, Row& pairs) const {
-    pairs.assign(static_cast<std::size_t>(g_.width), {});
     const int y = p.residue + row * step_;
-    for (int x = 0; x < g_.width; ++x) {
-      const std::size_t here = index(x, y);
-      if (!(g_.depth[here] > 0.0f)) continue;
-      for (std::size_t t = 0; t < kTaps.size(); ++t) {
-        const int qx = x + kTaps[t].dx * step_;
-        if (qx < 0 || qx >= g_.width || row + kTaps[t].dy >= p.rows) continue;
-        Weights w = alike(here, index(qx, y + kTaps[t].dy * step_));
-        for (float& v : w) v *= spline(kTaps[t]);
-        pairs[static_cast<std::size_t>(x)][t] = w;
-      }
+    for (std::size_t t = 0; t < kTaps.size(); ++t) {
+      for (std::vector<float>& w : pairs[t]) w.assign(static_cast<std::size_t>(g_.width), 0.0f);
+      const int dx = kTaps[t].dx * step_;
+      const int first = std::max(0, -dx), end = std::min(g_.width, g_.width - dx);
+      if (first >= end || row + kTaps[t].dy >= p.rows) continue;
+      find_weights(planes_, index(first, y), index(first + dx, y + kTaps[t].dy * step_),
+                   static_cast<std::size_t>(end - first), spline(kTaps[t]),
+                   {pairs[t][0].data() + first, pairs[t][1].data() + first});
     }
   }
 
@@ -170,12 +173,14 @@ class Level {
     add(p, {spline({0, 0}), spline({0, 0})});
     for (std::size_t t = 0; t < kTaps.size(); ++t) {
       const int dx = kTaps[t].dx * step_, dy = kTaps[t].dy;
+      const auto of = [&](int from_row, int from_x) -> Weights {
+        const auto& w = pairs[static_cast<std::size_t>(from_row % 3)][t];
+        return {w[0][static_cast<std::size_t>(from_x)], w[1][static_cast<std::size_t>(from_x)]};
+      };
       if (x + dx >= 0 && x + dx < g_.width && row + dy < piece.rows)
-        add(index(x + dx, y + dy * step_),
-            pairs[static_cast<std::size_t>(row % 3)][static_cast<std::size_t>(x)][t]);
+        add(index(x + dx, y + dy * step_), of(row, x));
       if (x - dx >= 0 && x - dx < g_.width && row - dy >= 0)
-        add(index(x - dx, y - dy * step_),
-            pairs[static_cast<std::size_t>((row - dy) % 3)][static_cast<std::size_t>(x - dx)][t]);
+        add(index(x - dx, y - dy * step_), of(row - dy, x - dx));
     }
     // From the second level on neighbours hold some of the same samples: composed, the splines
     // divide the variance by 4 per level where independent pixels would divide it by 13.
@@ -213,46 +218,11 @@ class Level {
     });
     return blurred;
   }
-  /// How much of q's light p takes, and p of q's, by guiding half: as far as they are of one
-  /// surface and differ by no more than noise explains.
-  [[nodiscard]] Weights alike(std::size_t p, std::size_t q) const {
-    if (!(g_.depth[q] > 0.0f)) return {};
-    const float cosine = g_.normal[p].dot(g_.normal[q]);
-    if (!(cosine > 0.0f)) return {};
-    const Vec3f d = g_.position[q] - g_.position[p];
-    const float height = std::max(std::abs(d.dot(g_.normal[p])), std::abs(d.dot(g_.normal[q])));
-    const float rounding = 1e-5f * std::max(g_.depth[p], g_.depth[q]);
-    const float off_plane =
-        height * height / (kPlane * kPlane * d.squaredNorm() + rounding * rounding);
-    if (!(off_plane < kNothing)) return {};
-    // Harmonic mean of the noise: a pixel that is sure of its light does not take from one that is
-    // not, as next to a lamp that nearly touches a ceiling.
-    const float noise = noise_[p] * noise_[q];
-    const float scale =
-        noise > 0.0f ? (noise_[p] + noise_[q]) / (2.0f * kErrors * kErrors * noise) : 0.0f;
-    const float surface = power_48(cosine);
-    const auto weight = [&](std::size_t h) {
-      const float x = in_.light[p][h].guide[3] - in_.light[q][h].guide[3];
-      const float unlike = scale > 0.0f ? scale * x * x : x == 0.0f ? 0.0f : kNothing;
-      return surface * falloff(off_plane, unlike);
-    };
-    return {weight(0), weight(1)};
-  }
-  /// About exp(-x - y), for a fifth of its time: (1 - x / 32)^32 of each, nothing from there on.
-  static float falloff(float x, float y) {
-    float f = std::max(0.0f, 1.0f - x / kNothing) * std::max(0.0f, 1.0f - y / kNothing);
-    for (int i = 0; i < 5; ++i) f *= f;
-    return f;
-  }
-  static float power_48(float x) {
-    const float x2 = x * x, x4 = x2 * x2, x8 = x4 * x4, x16 = x8 * x8;
-    return x16 * x16 * x16;
-  }
 
   const ShareGuides& g_;
   const Levels& in_;
   int step_;
-  std::vector<float> noise_;
+  const WeightPlanes& planes_;
 };
 
 }  // namespace
@@ -261,8 +231,9 @@ std::vector<Illumination> share_by_levels(const ShareGuides& guides, Illuminatio
   Levels now = pack(illumination);
   std::vector<Illumination> kept{std::move(illumination)};
   Levels next = now;
+  WeightPlanes planes(guides);
   for (int level = 0; level < kLevels; ++level) {
-    Level(guides, now, 1 << level).run(next);
+    Level(guides, now, 1 << level, planes).run(next);
     std::swap(now, next);
     if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(unpack(now));
   }

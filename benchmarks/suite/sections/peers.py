@@ -19,6 +19,8 @@ def render(peer, scene, folder, budget, seed):
     file = folder / f"{scene.name}{peer.ending}"
     file.write_text(peer.write(scene, peers.SIZE), encoding="utf-8")
     out = folder / "picture.exr"
+    for old in (out, out.with_suffix(".hdr")):
+        old.unlink(missing_ok=True)
     cost = peer.render(file, scene, budget, seed, out)
     return cost, out if out.exists() else out.with_suffix(".hdr")
 
@@ -164,13 +166,15 @@ median of three. Here: {there}.
 {lacking and chr(10) + lacking}
 ```sh
 apt-get install povray libllvm19 && python3 -m venv --system-site-packages build/python
-build/python/bin/pip install mitsuba
-build/python/bin/python benchmarks/run.py --only peers   # Radiance counts if rpict and oconv are on the PATH
+build/python/bin/pip install mitsuba pyradiance   # pyradiance has Radiance's programs; those on the PATH go before
+build/python/bin/python benchmarks/run.py --only peers
 ```
 
 {converged_text(data)}{table(head, rows, 3)}
 {document.image("peers.svg", "Error against CPU and wall seconds by program")}
 Mitsuba's samples are independent ones, its start (Python, and compiling for `llvm_ad_rgb`) counts as part of the
-process; POV-Ray finds lamps by its radiosity only, as none of its light sources shines by the cosine. Atrium's hybrid
-shares light between pixels, the others do not.
+process; POV-Ray finds lamps by its radiosity only, as none of its light sources shines by the cosine. Radiance runs
+one thread, and its pictures keep 8 bits and a common exponent of a pixel's channels; its rpict alone finds no
+caustics, and its metals have another lobe. Atrium's hybrid shares light between pixels, the others do not, but
+Radiance and POV-Ray keep indirect light between pixels.
 """

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <span>
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -186,15 +188,15 @@ struct ClosedBodies::Impl {
       }
       triangles.push_back(corners);
     }
-    void* v = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                      sizeof(Vec3f), used.size());
+    auto* v = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), used.size()));
     void* t = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                       sizeof(Triangle), triangles.size());
     if (v == nullptr || t == nullptr) {
       rtcReleaseGeometry(g);
       throw RuntimeFailure("not enough memory for the closed bodies of mesh '" + mesh.name + "'");
     }
-    std::memcpy(v, used.data(), used.size() * sizeof(Vec3f));
+    std::ranges::uninitialized_copy(used, std::span(v, used.size()));
     std::memcpy(t, triangles.data(), triangles.size() * sizeof(Triangle));
     rtcSetGeometryIntersectFilterFunction(g, count_crossing);
     rtcCommitGeometry(g);

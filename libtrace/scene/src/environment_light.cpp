@@ -54,7 +54,8 @@ std::vector<double> cell_means(const Image& image) {
 }
 
 std::vector<double> cell_means(const SkyDome& dome) {
-  std::vector<double> means(static_cast<std::size_t>(kDomeWidth) * kDomeHeight);
+  std::vector<double> means;
+  means.reserve(static_cast<std::size_t>(kDomeWidth) * kDomeHeight);
   for (int y = 0; y < kDomeHeight; ++y) {
     for (int x = 0; x < kDomeWidth; ++x) {
       double sum = 0.0;
@@ -66,7 +67,7 @@ std::vector<double> cell_means(const SkyDome& dome) {
                                  -std::sin(theta) * std::cos(phi)});
         }
       }
-      means[static_cast<std::size_t>(y * kDomeWidth + x)] = sum;
+      means.push_back(sum);
     }
   }
   return means;

@@ -16,14 +16,6 @@ constexpr float kPi = std::numbers::pi_v<float>;
 float safe_acos(float c) { return std::acos(std::clamp(c, -1.0f, 1.0f)); }
 float sin_from_cos(float c) { return std::sqrt(std::max(0.0f, 1.0f - c * c)); }
 
-// cos(max(0, a - b)) from the sines and cosines of a and b in [0, pi].
-float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
-  return cos_a > cos_b ? 1.0f : cos_a * cos_b + sin_a * sin_b;
-}
-float sin_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
-  return cos_a > cos_b ? 0.0f : sin_a * cos_b - cos_a * sin_b;
-}
-
 // Smallest cone that holds two cones.
 void merge_cones(LightBounds& a, const LightBounds& b) {
   const float ta = safe_acos(a.cos_spread);
@@ -71,36 +63,6 @@ float cluster_cost(const LightBounds& b, float extent_ratio) {
   return b.power * std::max(measure, 1e-3f) * extent_ratio * std::max(area, 1e-12f);
 }
 
-// Upper estimate of the contribution of a cluster at a point.
-float importance(const LightBounds& b, const Vec3f& p, const Vec3f& normal) {
-  const Vec3f center = b.box.center();
-  const float radius2 = 0.25f * b.box.sizes().squaredNorm();
-  const Vec3f to_light = center - p;
-  const float distance2 = std::max(to_light.squaredNorm(), 1e-20f);
-  const Vec3f wi = to_light / std::sqrt(distance2);
-  // Angle under which the cluster's bounding sphere is seen.
-  const bool inside = distance2 <= radius2;
-  const float sin_b = inside ? 0.0f : std::sqrt(radius2 / distance2);
-  const float cos_b = inside ? -1.0f : std::sqrt(std::max(0.0f, 1.0f - radius2 / distance2));
-
-  float cos_w = -b.axis.dot(wi);
-  if (b.two_sided) cos_w = std::abs(cos_w);
-  const float sin_w = sin_from_cos(cos_w);
-  const float sin_o = sin_from_cos(b.cos_spread);
-  const float cos_x = cos_of_difference(sin_w, cos_w, sin_o, b.cos_spread);
-  const float sin_x = sin_of_difference(sin_w, cos_w, sin_o, b.cos_spread);
-  const float cos_e = inside ? 1.0f : cos_of_difference(sin_x, cos_x, sin_b, cos_b);
-  if (cos_e <= b.cos_emission) return 0.0f;
-  float result = b.power * cos_e / std::max(distance2, radius2);
-  if (!normal.isZero()) {
-    const float cos_i = normal.dot(wi);
-    const float cos_r = inside ? 1.0f : cos_of_difference(sin_from_cos(cos_i), cos_i, sin_b, cos_b);
-    if (cos_r <= 0.0f) return 0.0f;
-    result *= cos_r;
-  }
-  return std::max(result, 1e-30f);
-}
-
 constexpr int kBuckets = 12;
 
 struct Split {
@@ -146,6 +108,45 @@ Split best_split(const std::vector<LightBounds>& lights, std::span<const std::ui
 
 }  // namespace
 
+LightTree::Cluster::Cluster(const LightBounds& b)
+    : center(b.box.center()),
+      axis(b.axis),
+      radius(0.5f * b.box.sizes().norm()),
+      power(b.power),
+      cos_spread(b.cos_spread),
+      sin_spread(sin_from_cos(b.cos_spread)),
+      cos_emission(b.cos_emission),
+      two_sided(b.two_sided) {}
+
+float LightTree::Cluster::importance(const Vec3f& p, const Vec3f* normal) const {
+  const Vec3f to_light = center - p;
+  const float distance2 = std::max(to_light.squaredNorm(), 1e-20f);
+  const float inverse = 1.0f / std::sqrt(distance2);
+  // The bounding sphere is seen within an angle b of its centre.
+  const float sin_b = radius * inverse;
+  if (sin_b >= 1.0f) return std::max(power / (radius * radius), 1e-30f);
+  const float cos_b = sin_from_cos(sin_b);
+  float result = power * inverse * inverse;
+
+  float cos_w = -axis.dot(to_light) * inverse;
+  if (two_sided) cos_w = std::abs(cos_w);
+  if (cos_w <= cos_spread) {  // x = w - spread, e = x - b
+    const float sin_w = sin_from_cos(cos_w);
+    const float cos_x = cos_w * cos_spread + sin_w * sin_spread;
+    const float sin_x = sin_w * cos_spread - cos_w * sin_spread;
+    const float cos_e = cos_x > cos_b ? 1.0f : cos_x * cos_b + sin_x * sin_b;
+    if (cos_e <= cos_emission) return 0.0f;
+    result *= cos_e;
+  }
+  if (normal != nullptr) {
+    const float cos_i = normal->dot(to_light) * inverse;
+    const float cos_r = cos_i > cos_b ? 1.0f : cos_i * cos_b + sin_from_cos(cos_i) * sin_b;
+    if (cos_r <= 0.0f) return 0.0f;
+    result *= cos_r;
+  }
+  return std::max(result, 1e-30f);
+}
+
 LightTree::LightTree(std::vector<LightBounds> lights) {
   std::vector<std::uint32_t> items(lights.size());
   std::iota(items.begin(), items.end(), 0U);
@@ -169,7 +170,7 @@ LightTree::LightTree(std::vector<LightBounds> lights) {
       bounds = merge(bounds, lights[i]);
       centroids.extend(lights[i].box.center());
     }
-    nodes_[task.node].bounds = bounds;
+    nodes_[task.node].cluster = Cluster(bounds);
     if (range.size() == 1) {
       nodes_[task.node].light = range[0];
       leaf_of_light_[range[0]] = task.node;
@@ -187,7 +188,6 @@ LightTree::LightTree(std::vector<LightBounds> lights) {
     nodes_.resize(nodes_.size() + 2);
     nodes_[left].parent = nodes_[left + 1].parent = task.node;
     nodes_[task.node].left = left;
-    nodes_[task.node].right = left + 1;
     const std::size_t m = task.begin + static_cast<std::size_t>(middle - range.begin());
     tasks.push_back({task.begin, m, left});
     tasks.push_back({m, task.end, left + 1});
@@ -197,37 +197,40 @@ LightTree::LightTree(std::vector<LightBounds> lights) {
 std::optional<LightTree::Choice> LightTree::choose(const Vec3f& p, const Vec3f& normal,
                                                    float u) const {
   if (nodes_.empty()) return std::nullopt;
+  const Vec3f* const n = normal.isZero() ? nullptr : &normal;
   std::uint32_t node = 0;
   float probability = 1.0f;
   while (nodes_[node].left != 0) {
-    const float a = importance(nodes_[nodes_[node].left].bounds, p, normal);
-    const float b = importance(nodes_[nodes_[node].right].bounds, p, normal);
+    const std::uint32_t left = nodes_[node].left;
+    const float a = nodes_[left].cluster.importance(p, n);
+    const float b = nodes_[left + 1].cluster.importance(p, n);
     if (!(a + b > 0.0f)) return std::nullopt;
     const float pa = a / (a + b);
     if (u < pa) {
       u = std::min(u / pa, 0x1.fffffep-1f);
       probability *= pa;
-      node = nodes_[node].left;
+      node = left;
     } else {
       u = std::min((u - pa) / (1.0f - pa), 0x1.fffffep-1f);
       probability *= 1.0f - pa;
-      node = nodes_[node].right;
+      node = left + 1;
     }
   }
-  if (node == 0 && !(importance(nodes_[0].bounds, p, normal) > 0.0f)) return std::nullopt;
+  if (node == 0 && !(nodes_[0].cluster.importance(p, n) > 0.0f)) return std::nullopt;
   return Choice{nodes_[node].light, probability};
 }
 
 float LightTree::probability(const Vec3f& p, const Vec3f& normal, std::uint32_t light) const {
   std::uint32_t node = light < leaf_of_light_.size() ? leaf_of_light_[light] : 0xffffffffU;
   if (node == 0xffffffffU) return 0.0f;
+  const Vec3f* const n = normal.isZero() ? nullptr : &normal;
   float probability = 1.0f;
   while (node != 0) {
-    const Node& parent = nodes_[nodes_[node].parent];
-    const float a = importance(nodes_[parent.left].bounds, p, normal);
-    const float b = importance(nodes_[parent.right].bounds, p, normal);
+    const std::uint32_t left = nodes_[nodes_[node].parent].left;
+    const float a = nodes_[left].cluster.importance(p, n);
+    const float b = nodes_[left + 1].cluster.importance(p, n);
     if (!(a + b > 0.0f)) return 0.0f;
-    probability *= (node == parent.left ? a : b) / (a + b);
+    probability *= (node == left ? a : b) / (a + b);
     node = nodes_[node].parent;
   }
   return probability;

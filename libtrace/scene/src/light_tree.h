@@ -39,10 +39,22 @@ class LightTree {
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
 
  private:
+  /// What is asked of bounds at every point.
+  struct Cluster {
+    Cluster() = default;
+    explicit Cluster(const LightBounds& b);
+    /// Upper estimate of the contribution at a point with a normal or none.
+    [[nodiscard]] float importance(const Vec3f& p, const Vec3f* normal) const;
+
+    Vec3f center = Vec3f::Zero(), axis = Vec3f::UnitZ();
+    float radius = 0.0f, power = 0.0f;
+    float cos_spread = -1.0f, sin_spread = 0.0f, cos_emission = 0.0f;
+    bool two_sided = false;
+  };
   struct Node {
-    LightBounds bounds;
+    Cluster cluster;
     std::uint32_t parent = 0;
-    std::uint32_t left = 0, right = 0;  // children; left == 0: leaf
+    std::uint32_t left = 0;  // child, the other one is behind it; 0: leaf
     std::uint32_t light = 0;
   };
   std::vector<Node> nodes_;

@@ -222,8 +222,9 @@ class Finder {
     const float step = 0.01f * std::min(u.norm(), v.norm());
     int open = 0;
     for (int i = 0; i < kPoints * kPoints; ++i) {
-      const Vec3f at = c[0] + (static_cast<float>(i % kPoints) + 0.5f) / kPoints * u +
-                       (static_cast<float>(i / kPoints) + 0.5f) / kPoints * v;
+      const int row = i / kPoints, column = i % kPoints;
+      const Vec3f at = c[0] + (static_cast<float>(column) + 0.5f) / kPoints * u +
+                       (static_cast<float>(row) + 0.5f) / kPoints * v;
       const Ray ray{at - step * normal, normal, 0.0f, 2.0f * step};
       open += query_.occluded(ray, counters_, Counter::RaysProbe, kOpaque | kAlpha) ? 0 : 1;
     }

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <span>
 #include <string>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -123,8 +125,8 @@ struct RayQuery::Impl {
 
   RTCGeometry make_geometry(const Mesh& mesh) const {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
-        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+    auto* v = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh.positions.size()));
     auto* t = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), mesh.triangles.size()));
@@ -132,7 +134,7 @@ struct RayQuery::Impl {
       rtcReleaseGeometry(g);
       throw RuntimeFailure("not enough memory for the geometry of mesh '" + mesh.name + "'");
     }
-    std::memcpy(v, mesh.positions.data(), mesh.positions.size() * 3 * sizeof(float));
+    std::ranges::uninitialized_copy(mesh.positions, std::span(v, mesh.positions.size()));
     std::memcpy(t, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
     return g;
   }

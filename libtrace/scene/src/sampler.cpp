@@ -11,8 +11,8 @@ void Sampler::fill(std::uint64_t seed, std::uint32_t stream, std::uint32_t first
   const Sampler sampler(seed, stream, 0);
   for (std::uint32_t pair = 0; pair < 2; ++pair) {
     const Keys k = keys(sampler.key_, pair);
-    float* const x = u[2 * pair];
-    float* const y = u[2 * pair + 1];
+    float* const x = u[2 * std::size_t{pair}];
+    float* const y = u[2 * std::size_t{pair} + 1];
     for (std::size_t n = 0; n < count; ++n) {
       const std::uint32_t index = first_index + static_cast<std::uint32_t>(n);
       draw(k, index, x[n], y[n]);

@@ -1,5 +1,8 @@
 #include "scene/ray_query.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace atrium::scene {
 
 std::array<Vec3f, 3> Scene::corners(ObjectId id, std::uint32_t triangle) const {
@@ -31,6 +34,17 @@ Vec3f shading_normal(const Object& object, const Mesh& mesh, const Triangle& t, 
   return n.dot(ng) < 0.0f ? Vec3f(-n) : n;
 }
 
+Vec3f facet_normal(const Vec3f& e1, const Vec3f& e2) {
+  const Vec3f n = e1.cross(e2);
+  const float square = n.squaredNorm();
+  if (square > 1e-25f && square < 1e25f) return n * (1.0f / std::sqrt(square));
+  // The cross product of scaled edges neither over- nor underflows.
+  const float scale = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
+  const Vec3f scaled = scale > 0.0f ? Vec3f((e1 / scale).cross(e2 / scale)) : Vec3f::Zero();
+  const float length = scaled.norm();
+  return length > 0.0f ? Vec3f(scaled / length) : Vec3f::UnitY();
+}
+
 }  // namespace
 
 SurfacePoint surface_point(const Scene& scene, ObjectId id, std::uint32_t triangle, float u,
@@ -50,11 +64,7 @@ SurfacePoint surface_point(const Scene& scene, ObjectId id, std::uint32_t triang
   p.position = b0 * c[0] + u * c[1] + v * c[2];
   const Vec3f e1 = c[1] - c[0];
   const Vec3f e2 = c[2] - c[0];
-  // Slivers: the cross product of scaled edges neither over- nor underflows.
-  const float scale = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
-  const Vec3f n = scale > 0.0f ? Vec3f((e1 / scale).cross(e2 / scale)) : Vec3f::Zero();
-  const float length = n.norm();
-  p.ng = length > 0.0f ? Vec3f(n / length) : Vec3f::UnitY();
+  p.ng = facet_normal(e1, e2);
   p.ns = shading_normal(object, mesh, t, b0, u, v, p.ng);
   // Interpolation error gamma(7) of each coordinate (pbrt, 4th ed., sec. 6.8.4), doubled twice for
   // the transform of instances and for Embree's own rounding of t; along the normal.

@@ -127,7 +127,8 @@ class WallPlan {
     if (!(bounds_.sizes().minCoeff() > least_) || !(cell_ > 0.0)) return;
     width_ = std::max(1, static_cast<int>(std::lround(bounds_.sizes().x() / cell_)));
     height_ = std::max(1, static_cast<int>(std::lround(bounds_.sizes().y() / cell_)));
-    covered_.assign(static_cast<std::size_t>(width_ * height_), 0);
+    const int cells = width_ * height_;
+    covered_.assign(static_cast<std::size_t>(cells), 0);
     for (const Corners& t : wall.triangles) draw(t);
     for (int axis = 0; axis < 2; ++axis) {
       auto& list = lines_[static_cast<std::size_t>(axis)];
@@ -169,7 +170,8 @@ class WallPlan {
     return origin_ + static_cast<float>(x) * u_ + static_cast<float>(y) * v_;
   }
   [[nodiscard]] std::uint8_t& covered(int x, int y) {
-    return covered_[static_cast<std::size_t>(y * width_ + x)];
+    const int i = y * width_ + x;
+    return covered_[static_cast<std::size_t>(i)];
   }
   [[nodiscard]] Vec2 centre(int x, int y) const {
     return {bounds_.min().x() + (x + 0.5) * bounds_.sizes().x() / width_,

@@ -27,8 +27,8 @@ void cage_of_box(const YamlView& view, MeshData& mesh, std::size_t& corners_left
     if (items.size() != 3) divide->fail("expected three whole numbers");
     for (std::size_t i = 0; i < 3; ++i) n[i] = items[i].integer(1, 64);
   }
-  const auto faces = static_cast<std::size_t>(2 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0]));
-  take_corners(corners_left, 4 * faces, view);
+  const int corners = 8 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0]);
+  take_corners(corners_left, static_cast<std::size_t>(corners), view);
   std::map<std::array<int, 3>, std::uint32_t> points;
   const auto point = [&](const std::array<int, 3>& p) {
     const auto [found, fresh] =

@@ -16,10 +16,8 @@ Eigen::Affine3d read_matrix(const YamlView& view) {
   if (count != 12 && count != 16) view.fail("a matrix has 12 or 16 numbers, row by row");
   const std::vector<double> m = view.numbers(count);
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      transform.matrix()(row, column) = m[static_cast<std::size_t>(4 * row + column)];
-    }
+  for (std::size_t i = 0; i < 12; ++i) {
+    transform.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = m[i];
   }
   if (count == 16 && (m[12] != 0.0 || m[13] != 0.0 || m[14] != 0.0 || m[15] != 1.0)) {
     view.fail("the last row of a matrix must be 0 0 0 1");
@@ -299,7 +297,7 @@ void put_in_group(Placed& content, const YamlMap& map) {
 std::string read_light_group(const YamlMap& map) {
   const auto view = map.find("light_group");
   if (!view) return {};
-  const std::string name = view->text();
+  std::string name = view->text();
   if (name.empty() || name.find('=') != std::string::npos)
     view->fail("the name of a light group is a text without '='");
   return name;

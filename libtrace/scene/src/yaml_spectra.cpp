@@ -10,9 +10,7 @@ namespace {
 
 using material::SampledSpectrum;
 
-constexpr double kFirstNm = 380.0;
-constexpr double kLastNm = 730.0;
-constexpr double kStepNm = 5.0;
+constexpr int kFirstNm = 380, kLastNm = 730, kStepNm = 5;
 
 template <class... F>
 struct Overloaded : F... {
@@ -63,7 +61,7 @@ SampledSpectrum read_samples(const YamlMap& map) {
 // Planck's law at T kelvin, relative. c2 = h c / k = 1.438777e7 nm K (CODATA 2018).
 SampledSpectrum blackbody(double kelvin) {
   SampledSpectrum s;
-  for (double nm = kFirstNm; nm <= kLastNm; nm += kStepNm) {
+  for (int nm = kFirstNm; nm <= kLastNm; nm += kStepNm) {
     s.wavelength_nm.push_back(nm);
     s.value.push_back(std::pow(560.0 / nm, 5.0) / std::expm1(1.438777e7 / (nm * kelvin)));
   }
@@ -74,7 +72,7 @@ SampledSpectrum blackbody(double kelvin) {
 SampledSpectrum relative_to_d65(const SampledSpectrum& power, const YamlView& view) {
   const SampledSpectrum& d65 = *material::find_illuminant("D65");
   SampledSpectrum ratio;
-  for (double nm = kFirstNm; nm <= kLastNm; nm += kStepNm) ratio.wavelength_nm.push_back(nm);
+  for (int nm = kFirstNm; nm <= kLastNm; nm += kStepNm) ratio.wavelength_nm.push_back(nm);
   // Lines between the steps keep their samples.
   std::copy_if(power.wavelength_nm.begin(), power.wavelength_nm.end(),
                std::back_inserter(ratio.wavelength_nm), [](double nm) {

@@ -139,7 +139,7 @@ std::filesystem::path YamlView::file() const {
   if (relative.is_absolute() || relative.has_root_path() || climbs) {
     fail("a file must lie beside the scene or below it (relative path without '..')");
   }
-  const std::filesystem::path path = std::filesystem::path(*file_).parent_path() / relative;
+  std::filesystem::path path = std::filesystem::path(*file_).parent_path() / relative;
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) fail("no file '" + relative.string() + "'");
   return path;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "material/frame.h"
 
@@ -33,19 +32,20 @@ class SphericalTriangle {
   /// Unit direction with density 1 / solid_angle(). Only if usable().
   [[nodiscard]] Vec3d sample(const Vec2f& u) const {
     const Vec3d &a = v_[0], &b = v_[1], &c = v_[2];
-    const Vec3d ab = a.cross(b).normalized(), bc = b.cross(c).normalized(),
-                ca = c.cross(a).normalized();
-    const auto angle = [](const Vec3d& x, const Vec3d& y) {
-      return 2.0 * std::atan2((x - y).norm(), (x + y).norm());
-    };
-    const double alpha = angle(ab, -ca), beta = angle(bc, -ab), gamma = angle(ca, -bc);
-    const double area = std::max(0.0, alpha + beta + gamma - std::numbers::pi);
+    const Vec3d ab = a.cross(b).normalized(), ac = a.cross(c).normalized();
+    // The angle alpha at a, accurate where it is small or near pi.
+    const double less = (ab - ac).norm(), more = (ab + ac).norm();
+    const double cos_alpha = 0.25 * (more * more - less * less), sin_alpha = 0.5 * less * more;
     // The sub-triangle a, b, c' whose area is the share u.x of the whole: c' on the edge a-c.
-    const double phi = static_cast<double>(u.x()) * area + std::numbers::pi - alpha;
-    const double k1 = std::cos(phi) + std::cos(alpha);
-    const double k2 = std::sin(phi) - std::sin(alpha) * a.dot(b);
-    const double numerator = k2 + (k2 * std::cos(phi) - k1 * std::sin(phi)) * std::cos(alpha);
-    const double denominator = (k2 * std::sin(phi) + k1 * std::cos(phi)) * std::sin(alpha);
+    // phi = area + pi - alpha.
+    const double area = static_cast<double>(u.x()) * solid_angle_;
+    const double cos_area = std::cos(area), sin_area = std::sin(area);
+    const double cos_phi = -(cos_area * cos_alpha + sin_area * sin_alpha);
+    const double sin_phi = cos_area * sin_alpha - sin_area * cos_alpha;
+    const double k1 = cos_phi + cos_alpha;
+    const double k2 = sin_phi - sin_alpha * a.dot(b);
+    const double numerator = k2 + (k2 * cos_phi - k1 * sin_phi) * cos_alpha;
+    const double denominator = (k2 * sin_phi + k1 * cos_phi) * sin_alpha;
     const double q = denominator != 0.0 ? std::clamp(numerator / denominator, -1.0, 1.0) : 1.0;
     const Vec3d c2 = q * a + std::sqrt(std::max(0.0, 1.0 - q * q)) * away(c, a);
     const double z = 1.0 - static_cast<double>(u.y()) * (1.0 - c2.dot(b));
