@@ -6,6 +6,8 @@ set(ATRIUM_WARNINGS -Wall -Wextra -Wconversion -Wshadow
     $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>)  # clang means arguments of functions, too
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND ATRIUM_WARNINGS -Wno-restrict)  # false alarms for "text" + std::string (GCC PR105651)
+  # ... and, at -O1, for variants that hold vectors
+  list(APPEND ATRIUM_WARNINGS $<$<CONFIG:RelWithDebInfo>:-Wno-array-bounds>)
 endif()
 
 function(atrium_compile_settings target)

@@ -144,6 +144,7 @@ std::string array_text(const scene::MeshFileSummary::Array& a) {
 void add_arrays(const std::vector<scene::MeshFileSummary::Array>& arrays, const char* name,
                 Report& r) {
   std::vector<std::string> texts;
+  texts.reserve(arrays.size());
   for (const scene::MeshFileSummary::Array& a : arrays) texts.push_back(array_text(a));
   r.list(name, texts);
 }

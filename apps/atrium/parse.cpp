@@ -116,7 +116,7 @@ Command parse_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     throw Error(cli::usage_error(e, "atrium"));
   }
-  const Command command = p.finish(join(argc, argv));
+  Command command = p.finish(join(argc, argv));
   if (!p.print_config) return command;
   const CLI::App& sub = *p.app.get_subcommands().front();
   if (sub.get_subcommands().empty())

@@ -202,7 +202,8 @@ void render_walk(Pictures p, const Walk& walk, const std::vector<ViewJob>& frame
     session.progress.note(text);
   }
   statistics.walk = WalkSummary{walk.frames, walk.first, walk.last, p.tone.ev};
-  const auto count = static_cast<std::size_t>(walk.last - walk.first + 1);
+  const int number = walk.last - walk.first + 1;
+  const auto count = static_cast<std::size_t>(number);
   for (std::size_t i = 0; i < count; ++i) {
     const int frame = walk.first + static_cast<int>(i);
     if (!session.interrupted() &&

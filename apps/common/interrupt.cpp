@@ -1,7 +1,7 @@
 #include "common/interrupt.h"
 
 #include <pthread.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more in it than <csignal>
 #include <unistd.h>
 
 #include <chrono>

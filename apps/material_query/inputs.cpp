@@ -148,6 +148,7 @@ std::string refusal(std::string_view name, const JsonValue& value, std::string_v
 
 Inputs::Inputs(const std::vector<Input>& wanted, const JsonValue& given) {
   std::vector<std::string_view> known;
+  known.reserve(wanted.size());
   for (const Input& input : wanted) known.push_back(input.name);
   check_members(given, known, "input");
   for (const Input& input : wanted) {

@@ -41,7 +41,7 @@ const std::vector<Kind>& all_kinds() {
 }
 
 Vec3d viewer_above(const Inputs& in) {
-  const Vec3d b = in.direction("b");
+  Vec3d b = in.direction("b");
   if (!(b.z() >= 0.0)) {
     std::string z;
     app::append_json_number(z, b.z());

@@ -112,6 +112,7 @@ plot::SheetChart wave_sheet(const std::vector<WaveResult>& results) {
   plot::SheetChart sheet;
   sheet.title = "facets and wave optics by sigma / lambda";
   std::vector<double> sigmas;
+  sigmas.reserve(results.size());
   for (const WaveResult& r : results) sigmas.push_back(r.wave.sigma);
   std::sort(sigmas.begin(), sigmas.end());
   sigmas.erase(std::unique(sigmas.begin(), sigmas.end()), sigmas.end());

@@ -122,7 +122,7 @@ LobeDifference lobe_difference(const LobeSurface& reference, const LobeSurface& 
   const Nodes nodes(theta_deg * kDegree);
   const Vec3f wo = in_plane(theta_deg);
   const double mirror = reference.mirror(wo), other_mirror = other.mirror(wo);
-  std::array<double, kSectors * kRings> patches{};
+  std::array<double, std::size_t{kSectors} * kRings> patches{};
   patches[0] = mirror - other_mirror;
   LobeDifference d;
   d.albedo = mirror;

@@ -53,6 +53,11 @@ std::vector<bool> pixels_of_subject(const scene::RayQuery& query, const scene::C
   return mask;
 }
 
+std::size_t index(const Image& image, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+         static_cast<std::size_t>(x);
+}
+
 std::array<double, 3> rgb(const Image& image, int x, int y) {
   return {static_cast<double>(image.at(x, y, 0)), static_cast<double>(image.at(x, y, 1)),
           static_cast<double>(image.at(x, y, 2))};
@@ -87,7 +92,7 @@ std::vector<double> scales(const Image& reference) {
       int count = 0;
       for (int v = std::max(0, y - 2); v <= std::min(reference.height - 1, y + 2); ++v)
         for (int u = std::max(0, x - 2); u <= std::min(reference.width - 1, x + 2); ++u, ++count)
-          sum += Y[static_cast<std::size_t>(v * reference.width + u)];
+          sum += Y[index(reference, u, v)];
       scale.push_back(sum / count + floor);
     }
   return scale;
@@ -145,7 +150,7 @@ ImageDifference difference(const RenderedTile& image, const RenderedTile& refere
   std::size_t count = 0;
   for (int y = 0; y < mean.height; ++y)
     for (int x = 0; x < mean.width; ++x) {
-      const auto pixel = static_cast<std::size_t>(y * mean.width + x);
+      const std::size_t pixel = index(mean, x, y);
       if (!reference.subject[pixel]) continue;
       const auto a = rgb(image.half[0], x, y), b = rgb(image.half[1], x, y);
       const auto ra = rgb(reference.half[0], x, y), rb = rgb(reference.half[1], x, y);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,8 +22,8 @@ struct TileOptions {
 /// A small picture, computed twice with half of the samples each: what both halves of two pictures
 /// agree on is difference, not noise.
 struct RenderedTile {
-  scene::Image half[2];       ///< linear R, G, B
-  std::vector<bool> subject;  ///< pixels whose centre shows the object
+  std::array<scene::Image, 2> half;  ///< linear R, G, B
+  std::vector<bool> subject;         ///< pixels whose centre shows the object
   double exposure = 0.0;
   bool complete = true;  ///< false: interrupted
 };

@@ -64,7 +64,8 @@ void add_swatches(const std::vector<Swatch>& swatches, int columns, const Box& b
   const int rows = (count + columns - 1) / columns;
   const double width = (box.x1 - box.x0) / columns, height = (box.y1 - box.y0) / rows;
   for (int i = 0; i < count; ++i) {
-    const double x = box.x0 + width * (i % columns), y = box.y1 - height * (i / columns + 1);
+    const int row = i / columns, column = i % columns;
+    const double x = box.x0 + width * column, y = box.y1 - height * (row + 1);
     add_drawing(scene, [swatch = swatches[static_cast<std::size_t>(i)],
                         cell = Box{x, y, x + width, y + height}](vtkContext2D* painter) {
       draw_swatch(painter, swatch, cell);
@@ -323,7 +324,8 @@ void add_panels(const std::vector<Panel>& panels, const Picture& picture, vtkCon
   const double width = double{1} * picture.width / columns;
   const double height = double{1} * picture.height / rows;
   for (int i = 0; i < static_cast<int>(panels.size()); ++i) {
-    const double x = width * (i % columns), y = picture.height - height * (i / columns + 1);
+    const int row = i / columns, column = i % columns;
+    const double x = width * column, y = picture.height - height * (row + 1);
     const Box box{x, y + 0.5 * kMargin, x + width, y + height - 0.5 * kMargin};
     std::visit([&](const auto& panel) { add_panel(panel, box, scene); },
                panels[static_cast<std::size_t>(i)]);

@@ -46,8 +46,8 @@ void add_panel(const SheetChart& sheet, Box box, vtkContextScene* scene) {
     for (int i = 0; i < layout.columns * layout.rows; ++i) {
       const Tile& tile = sheet.tiles[static_cast<std::size_t>(i)];
       if (tile.width == 0) continue;
-      const double x = x0 + width * (i % layout.columns),
-                   y = box.y1 - height * (i / layout.columns);
+      const int row = i / layout.columns, column = i % layout.columns;
+      const double x = x0 + width * column, y = box.y1 - height * row;
       draw_tile(painter, tile, {x, y - height + gap, x + width - gap, y});
     }
   });

@@ -4,7 +4,7 @@
 
 #include <dlfcn.h>
 #include <execinfo.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more in it than <csignal>
 #include <ucontext.h>
 #include <xmmintrin.h>
 

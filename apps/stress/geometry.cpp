@@ -94,7 +94,7 @@ Sweep offset(Extent extent) {
 constexpr double kRho = 0.6, kExitance = 5.0;
 
 Outcome of_closed_room(SceneKit& kit, double lamp_area, const Vec3d& eye,
-                       radiosity::SolveOptions options) {
+                       const radiosity::SolveOptions& options) {
   Trial trial({std::move(kit.model()), look_at(eye, eye + Vec3d(1, 0.2, 0.1), 1.0), 1.0});
   trial.solve(options);
   // Sheets in one place are stored as often as they are there, but what they absorb counts once.

@@ -136,6 +136,7 @@ std::vector<double> shares(const scene::RayQuery& query, const scene::SurfaceFie
                            const std::vector<Point>& points,
                            const radiosity::MeasureOptions& options) {
   std::vector<Sensor> sensors;
+  sensors.reserve(points.size());
   for (const Point& p : points) sensors.push_back(p.sensor);
   const radiosity::MeasureResult result =
       radiosity::measure(query, material::SpectralBasis::grey(), field, sensors, options);
@@ -318,12 +319,14 @@ Case mask_case(const Mask& mask) {
           4);
   const std::vector<int> types{5, kClear, 16};
   std::vector<Point> points;
+  points.reserve(std::size(kAlong));
   for (const double y : kAlong) points.push_back({"y = " + number(y), {{2, y, 0}, {0, 0, 1}}});
   for (const int type : types) {
     const Sky sky(type, kGround);
     const std::vector<double> north =
         mask.horizontal ? std::vector<double>{} : north_side(sky, mask.size, 60);
     std::vector<double> references;
+    references.reserve(points.size());
     for (const Point& p : points)
       references.push_back(mask_case_expected(mask, sky, north, p.sensor.position.y()));
     // Errors of dark points count against a tenth of the brightest, as in 5.7.

@@ -45,7 +45,7 @@ Case convergence(std::string name, std::string source, std::vector<Quantity> qua
           std::move(source),
           std::move(quantities),
           1,
-          [measure](std::uint64_t) { return measure(); }};
+          [measure = std::move(measure)](std::uint64_t) { return measure(); }};
 }
 
 /// Largest error / bound^x of a curve.

@@ -26,7 +26,7 @@ std::string text(double x) {
 }
 
 Case exact(std::string name, std::string source, std::vector<Quantity> quantities,
-           std::vector<double> values) {
+           const std::vector<double>& values) {
   for (Quantity& q : quantities) q.kind = Kind::Exact;
   return {"Form factors",
           std::move(name),
@@ -142,7 +142,7 @@ Case concentric_spheres() {
       return std::make_unique<Solution>(kit.build(), radiosity::SolveOptions{.element_size = 0.3,
                                                                              .row_rays = 16,
                                                                              .gather_rays = 16,
-                                                                             .direct_samples = 64,
+                                                                             .direct_samples = 256,
                                                                              .seed = seed});
     };
     const auto one = solved(true), two = solved(false);
@@ -199,6 +199,7 @@ Case l_room_case() {
             kEmissivity * s.sum(room[j].name, Part::Total).flux / area;
     }
     std::vector<double> values;
+    values.reserve(shown.size() + 1);
     for (const auto& [i, j] : shown) values.push_back(exchange(i, j));
     values.push_back((exchange - *reference).cwiseAbs().maxCoeff() / reference->maxCoeff());
     return values;

@@ -38,8 +38,9 @@ double exchange_area(const Polygon& from, const Polygon& to) {
   double sum = 0.0;
   for (int i = 0; i < kPanels * 3; ++i)
     for (int j = 0; j < kPanels * 3; ++j) {
-      const double s = (i / 3 + kNode[static_cast<std::size_t>(i % 3)]) / kPanels;
-      const double t = (j / 3 + kNode[static_cast<std::size_t>(j % 3)]) / kPanels;
+      const int across = i / 3, along = j / 3;
+      const double s = (across + kNode[static_cast<std::size_t>(i % 3)]) / kPanels;
+      const double t = (along + kNode[static_cast<std::size_t>(j % 3)]) / kPanels;
       const Vec3d p = from[0] + s * u + t * v;
       if (facing.dot(p - to[0]) <= 1e-12) continue;
       sum += kWeight[static_cast<std::size_t>(i % 3)] * kWeight[static_cast<std::size_t>(j % 3)] *

@@ -39,6 +39,7 @@ const std::array<Face, 6>& faces() {
 /// integrated, which is small where the kernel peaks: next to edges.
 double irradiance_at(const Face& own, const Vec3d& p) {
   constexpr int kPanels = 8;
+  constexpr std::size_t kNodes = 3 * std::size_t{kPanels};  // each way
   constexpr std::array<double, 3> kNode{0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> kWeight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const Vec3d n = own.normal();
@@ -47,10 +48,11 @@ double irradiance_at(const Face& own, const Vec3d& p) {
   for (const Face& other : faces()) {
     if (&other == &own) continue;
     const Vec3d m = other.normal();
-    for (std::size_t i = 0; i < 3 * kPanels; ++i)
-      for (std::size_t j = 0; j < 3 * kPanels; ++j) {
-        const Vec3d q = other.at((static_cast<double>(i / 3) + kNode[i % 3]) / kPanels,
-                                 (static_cast<double>(j / 3) + kNode[j % 3]) / kPanels);
+    for (std::size_t i = 0; i < kNodes; ++i)
+      for (std::size_t j = 0; j < kNodes; ++j) {
+        const std::size_t across = i / 3, along = j / 3;
+        const Vec3d q = other.at((static_cast<double>(across) + kNode[i % 3]) / kPanels,
+                                 (static_cast<double>(along) + kNode[j % 3]) / kPanels);
         const Vec3d d = q - p;
         const double r2 = d.squaredNorm();
         sum += kWeight[i % 3] * kWeight[j % 3] * (radiosity_at(q) - here) * n.dot(d) * -m.dot(d) /

@@ -70,6 +70,7 @@ void SceneKit::polygon(const std::string& name, MaterialId material, std::vector
 void SceneKit::block(const std::string& name, MaterialId material, const Vec3d& low,
                      const Vec3d& high) {
   std::vector<Vec3d> p;
+  p.reserve(8);
   for (int i = 0; i < 8; ++i)
     p.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
                    (i & 4) != 0 ? high.z() : low.z());

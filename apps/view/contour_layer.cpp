@@ -57,7 +57,7 @@ ContourLayer::ContourLayer(vtkRenderer& renderer, Pick pick)
 }
 ContourLayer::~ContourLayer() { renderer_.RemoveObserver(observer_); }
 
-void ContourLayer::add(vtkSmartPointer<vtkPolyData> lines, double size) {
+void ContourLayer::add(const vtkSmartPointer<vtkPolyData>& lines, double size) {
   if (lines->GetNumberOfLines() == 0) return;
   size_ = size;
   add_actor(*lines, false);

@@ -24,7 +24,7 @@ class ContourLayer {
 
   /// \param lines  polylines whose scalars are their values.
   /// \param size  of the mesh [m].
-  void add(vtkSmartPointer<vtkPolyData> lines, double size);
+  void add(const vtkSmartPointer<vtkPolyData>& lines, double size);
   void clear();
   /// While it is true labels are gone and long lists of lines are drawn by some of their points.
   void moving(bool coarse);

@@ -53,7 +53,7 @@ vtkSmartPointer<vtkPolyData> known_triangles(const Mesh& mesh, const Triangles& 
   return data;
 }
 
-vtkSmartPointer<vtkPolyData> cut(vtkSmartPointer<vtkPolyData> lines, const Clip& clip) {
+vtkSmartPointer<vtkPolyData> cut(const vtkSmartPointer<vtkPolyData>& lines, const Clip& clip) {
   vtkNew<vtkClipPolyData> filter;
   filter->SetInputData(lines);
   filter->SetClipFunction(vtk_plane(clip));

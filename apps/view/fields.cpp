@@ -103,6 +103,7 @@ std::size_t find_field(const std::vector<Field>& fields, const std::string& name
   const std::size_t found = index(name == "illuminance_lux" ? "illuminance" : name);
   if (found < fields.size()) return found;
   std::vector<std::string_view> known;
+  known.reserve(fields.size());
   for (const Field& f : fields) known.push_back(f.name);
   throw Error("--field " + name + ": unknown" +
               (known.empty() ? "; the mesh has no arrays" : app::suggestion(name, known)));

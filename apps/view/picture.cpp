@@ -46,6 +46,7 @@ std::vector<Legend::Entry> class_entries(const Mesh& mesh, const Field& field,
   const auto& names = field.array == "material_id" ? mesh.materials : mesh.objects;
   const bool named = field.array == "material_id" || field.array == "object_id";
   std::vector<Legend::Entry> entries;
+  entries.reserve(largest.size());
   for (const auto& [id, a] : largest)
     entries.push_back({named ? name_of(names, id) : field.name + " " + std::to_string(id),
                        class_colour(static_cast<std::uint32_t>(id))});
@@ -250,9 +251,11 @@ struct Picture::Impl {
   }
 
   void update_legend() {
-    if (!state->legend)
+    if (!state->legend) {
       legend.hide();
-    else if (field().look == Look::Classes)
+      return;
+    }
+    if (field().look == Look::Classes)
       legend.show_classes(field().array == "element_id" ? std::vector<Legend::Entry>{}
                                                         : class_entries(*mesh, field(), shown));
     else if (field().look == Look::Scale || field().look == Look::Error)

@@ -66,7 +66,7 @@ void watch_solve(const ViewCommand&, std::stop_token,
 
 }  // namespace
 
-int run_view(const ViewCommand& c, std::stop_token stop) {
+int run_view(const ViewCommand& c, const std::stop_token& stop) {
   vtkObject::GlobalWarningDisplayOff();  // errors come back as our own
   app::Progress progress(c.quiet);
   const scene::ThreadLimit threads(c.threads);

@@ -8,6 +8,6 @@ namespace atrium::view {
 
 /// Does what the command line says. \return the exit code.
 /// \throws Error, RuntimeFailure.
-[[nodiscard]] int run_view(const ViewCommand& command, std::stop_token stop);
+[[nodiscard]] int run_view(const ViewCommand& command, const std::stop_token& stop);
 
 }  // namespace atrium::view

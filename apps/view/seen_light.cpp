@@ -57,8 +57,9 @@ std::vector<SeenPlace> seen_places(const Pick& pick, vtkCamera& camera, double a
   constexpr int kColumns = 64, kRows = 48;
   std::vector<SeenPlace> seen;
   for (int i = 0; i < kColumns * kRows; ++i) {
-    const double x = 2.0 * (i % kColumns + 0.5) / kColumns - 1.0;
-    const double y = 2.0 * (i / kColumns + 0.5) / kRows - 1.0;
+    const int row = i / kColumns, column = i % kColumns;
+    const double x = 2.0 * (column + 0.5) / kColumns - 1.0;
+    const double y = 2.0 * (row + 0.5) / kRows - 1.0;
     const ViewRay ray = view_ray(camera, aspect, x, y);
     if (const auto hit = pick(ray.origin, ray.direction))
       seen.push_back({hit->polygon, hit->front});

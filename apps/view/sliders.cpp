@@ -30,8 +30,9 @@ class Moved : public vtkCommand {
 vtkSmartPointer<vtkSliderRepresentation2D> representation(const std::string& group, double factor,
                                                           std::size_t index) {
   auto r = vtkSmartPointer<vtkSliderRepresentation2D>::New();
-  const double x = 0.02 + 0.2 * static_cast<double>(index / kRows);
-  const double y = 0.78 - 0.085 * static_cast<double>(index % kRows);
+  const std::size_t column = index / kRows, row = index % kRows;
+  const double x = 0.02 + 0.2 * static_cast<double>(column);
+  const double y = 0.78 - 0.085 * static_cast<double>(row);
   r->GetPoint1Coordinate()->SetCoordinateSystemToNormalizedDisplay();
   r->GetPoint1Coordinate()->SetValue(x, y);
   r->GetPoint2Coordinate()->SetCoordinateSystemToNormalizedDisplay();

@@ -153,8 +153,8 @@ class Radiance:
     name, ending, unit = "Radiance, rpict", ".rad", "-ad"
     others = {
         64: "-as 16 -aa 0.25 -ar 32 -ab 4",
-        256: "-as 64 -aa 0.2 -ar 64 -ab 8",
-        1024: "-as 256 -aa 0.1 -ar 128 -ab 12",
+        256: "-as 64 -aa 0.2 -ar 64 -ab 6",
+        1024: "-as 256 -aa 0.15 -ar 64 -ab 8",
     }
     budgets = list(others)
     finer = 3

@@ -7,6 +7,7 @@ namespace atrium::radiosity {
 template <int N>
 [[nodiscard]] std::vector<Goal> goals_of(const std::vector<Draw>& plan, const Tally<N>& tally) {
   std::vector<Goal> goals;
+  goals.reserve(plan.size());
   for (const Draw& d : plan) goals.push_back({d.side, tally.drawn(d.side) + d.more});
   return goals;
 }

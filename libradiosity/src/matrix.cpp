@@ -98,7 +98,7 @@ class MatrixSolver {
   void exchange_areas() {
     const auto n = static_cast<Eigen::Index>(size_);
     require_memory();
-    exchange_.assign(problem_.shading.has_medium() ? N : 1, Matrix::Zero(n, n));
+    exchange_.assign(matrix_count(), Matrix::Zero(n, n));
     work_.run(
         size_, 1, counters_,
         [&](std::size_t begin, std::size_t end, Counters& c) {
@@ -112,9 +112,14 @@ class MatrixSolver {
         kFewSides);
     for (Matrix& m : exchange_) m.template triangularView<Eigen::StrictlyUpper>() = m.transpose();
   }
+  /// Of exchange areas: air takes another share of every lane.
+  [[nodiscard]] std::size_t matrix_count() const {
+    constexpr std::size_t kLanes = N;
+    return problem_.shading.has_medium() ? kLanes : 1;
+  }
   void require_memory() {
     constexpr std::uint64_t kSystem = 4;  // factors, the system, its factorisation and a product
-    const std::uint64_t matrices = kSystem + (problem_.shading.has_medium() ? N : 1);
+    const std::uint64_t matrices = kSystem + matrix_count();
     const std::uint64_t bytes = matrices * size_ * size_ * sizeof(double);
     MemoryBudget& memory = work_.memory();
     if (bytes > memory.room(MemoryBudget::Part::Rows))

@@ -35,10 +35,11 @@ std::uint64_t field_bytes_per_side(const SideShape& s) {
 std::uint32_t elements_that_fit(const MemoryBudget& memory, const scene::Scene& scene,
                                 const SideShape& shape, std::uint32_t wanted) {
   if (memory.limit() == 0) return wanted;
-  constexpr std::uint64_t kTriangle = 300;              // pieces and points that every triangle has
-  constexpr std::uint64_t kFirstRound = 16;             // rays of a row
-  constexpr std::uint64_t kRay = 3 * 16;                // an entry, while rows are joined
-  constexpr std::uint64_t kBeyond = kBalanceRays * 24;  // rows of the other solvers' balances
+  constexpr std::uint64_t kTriangle = 300;   // pieces and points that every triangle has
+  constexpr std::uint64_t kFirstRound = 16;  // rays of a row
+  constexpr std::uint64_t kRay = 48;         // three entries of 16, while rows are joined
+  constexpr std::uint64_t kBeyond =
+      std::uint64_t{kBalanceRays} * 24;  // rows of the other solvers' balances
   constexpr std::uint32_t kFewest = 16;
   const std::uint64_t fixed = memory.held() + kTriangle * scene.triangle_count();
   const std::uint64_t row = shape.solver == Solver::Rows ? kFirstRound * kRay : kBeyond;

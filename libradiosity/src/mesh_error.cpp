@@ -15,7 +15,8 @@ bool Bends::beyond(const std::vector<float>& field, SideIndex i, int axis, int e
   double count = 0.0;
   value = 0.0;
   for (int k = 0; k < 2; ++k) {
-    const std::uint32_t n = neighbours_[i / 2][static_cast<std::size_t>(4 * axis + 2 * end + k)];
+    const int slot = 4 * axis + 2 * end + k;
+    const std::uint32_t n = neighbours_[i / 2][static_cast<std::size_t>(slot)];
     if (n == SurfaceField::kNone) continue;
     const SideIndex j = side_index(n, side_of(i));
     if (known_[j] == 0) continue;

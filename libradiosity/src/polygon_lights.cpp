@@ -179,7 +179,7 @@ template class PolygonLights<3>;
 template class PolygonLights<4>;
 template class PolygonLights<8>;
 
-PolygonSampler::PolygonSampler(std::vector<Vec3d> corners, const Vec3d& polygon_normal,
+PolygonSampler::PolygonSampler(const std::vector<Vec3d>& corners, const Vec3d& polygon_normal,
                                const Vec3d& p, const Vec3d& normal)
     : p_(p), normal_(normal), polygon_normal_(polygon_normal) {
   clip_polygon(

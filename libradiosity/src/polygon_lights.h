@@ -48,7 +48,7 @@ class PolygonLights {
 /// exact factors, directions uniform in solid angle within a triangle.
 class PolygonSampler {
  public:
-  PolygonSampler(std::vector<Vec3d> corners, const Vec3d& polygon_normal, const Vec3d& p,
+  PolygonSampler(const std::vector<Vec3d>& corners, const Vec3d& polygon_normal, const Vec3d& p,
                  const Vec3d& normal);
   struct Sample {
     Vec3d direction;  ///< unit, towards the polygon

@@ -126,6 +126,7 @@ LightBytes bytes_of_light(scene::Light light) {
 std::vector<scene::Light> lights_without(const std::vector<scene::Light>& a,
                                          const std::vector<scene::Light>& b) {
   std::vector<LightBytes> others;
+  others.reserve(b.size());
   for (const scene::Light& l : b) others.push_back(bytes_of_light(l));
   std::vector<scene::Light> rest;
   for (const scene::Light& l : a) {
@@ -150,6 +151,7 @@ Tally<N> light_of(const Problem<N>& problem, std::vector<scene::Light> lights,
   if (alone.lights.empty()) return tally;
   const scene::LightSampler<N> sampler(alone, problem.shading.basis());
   std::vector<Draw> plan;
+  plan.reserve(sides.size());
   for (const SideIndex i : sides) plan.push_back({i, 1});
   sample_lights(problem, sampler, plan, tally, work, counters);
   return tally;

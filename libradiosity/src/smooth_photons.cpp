@@ -35,9 +35,10 @@ struct Places {
         area += piece.area;
       }
       const Vec3f n = facet.axis_u.cross(facet.axis_v).normalized();
-      position[2 * e] = position[2 * e + 1] = area > 0.0f ? Vec3f(sum / area) : facet.origin;
-      normal[2 * e] = n;
-      normal[2 * e + 1] = -n;
+      const std::size_t front = 2 * std::size_t{e}, back = front + 1;
+      position[front] = position[back] = area > 0.0f ? Vec3f(sum / area) : facet.origin;
+      normal[front] = n;
+      normal[back] = -n;
       size[e] = f.element_size(e);
     }
   }

@@ -21,6 +21,13 @@ void for_rows(const ShareGuides& guides, F&& pixel) {
                       });
 }
 
+template <class F>
+void for_pixels(std::size_t count, F&& pixel) {
+  scene::parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) pixel(i);
+  });
+}
+
 /// What one half's weights average in a pixel, as the machine adds it four by four: the half's own
 /// mean (the guide), its luminance, and the two replicates of the other half.
 struct Guided {
@@ -48,7 +55,7 @@ struct Levels {
 
 Levels pack(const Illumination& in) {
   Levels levels{std::vector<std::array<Guided, 2>>(in.variance.size()), in.variance};
-  for (std::size_t i = 0; i < in.variance.size(); ++i)
+  for_pixels(in.variance.size(), [&](std::size_t i) {
     for (std::size_t h = 0; h < 2; ++h) {
       Guided& g = levels.light[i][h];
       const Rgb own = (in.replicate[2 * h][i] + in.replicate[2 * h + 1][i]) * 0.5f;
@@ -58,19 +65,21 @@ Levels pack(const Illumination& in) {
       g.first = {a[0], a[1], a[2], b[0]};
       g.second = {b[1], b[2], 0.0f, 0.0f};
     }
+  });
   return levels;
 }
 
 Illumination unpack(const Levels& levels) {
   Illumination out;
   for (auto& r : out.replicate) r.resize(levels.light.size());
-  for (std::size_t i = 0; i < levels.light.size(); ++i)
+  for_pixels(levels.light.size(), [&](std::size_t i) {
     for (std::size_t h = 0; h < 2; ++h) {
       const Guided& g = levels.light[i][h];
       const std::size_t other = 2 * (1 - h);
       out.replicate[other][i] = make_rgb(g.first[0], g.first[1], g.first[2]);
       out.replicate[other + 1][i] = make_rgb(g.first[3], g.second[0], g.second[1]);
     }
+  });
   out.variance = levels.variance;
   return out;
 }
@@ -83,11 +92,10 @@ class Level {
   Level(const ShareGuides& guides, const Levels& in, int step, WeightPlanes& planes)
       : g_(guides), in_(in), step_(step), planes_(planes) {
     planes.noise = blurred_variance();
-    for (std::size_t h = 0; h < 2; ++h) {
-      planes.luminance[h].resize(in.light.size());
-      for (std::size_t i = 0; i < in.light.size(); ++i)
-        planes.luminance[h][i] = in.light[i][h].guide[3];
-    }
+    for (std::vector<float>& luminance : planes.luminance) luminance.resize(in.light.size());
+    for_pixels(in.light.size(), [&](std::size_t i) {
+      for (std::size_t h = 0; h < 2; ++h) planes.luminance[h][i] = in.light[i][h].guide[3];
+    });
   }
 
   /// Rows that are `step` apart see only each other: each such strip is done piece by piece.

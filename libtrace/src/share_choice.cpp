@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "box_sums.h"
+#include "scene/parallel.h"
 
 namespace atrium::trace {
 namespace {
@@ -34,11 +35,13 @@ std::vector<std::uint8_t> choose_shares(int width, int height,
                                         const std::vector<Illumination>& candidates,
                                         const std::vector<Rgb>& weight) {
   std::vector<std::uint8_t> choice(weight.size(), 0);
-  std::vector<double> least(weight.size());
+  std::vector<double> least(weight.size()), squares(weight.size());
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const BoxSums errors(width, height, [&](std::size_t i) {
-      return squared_error(candidates.front(), candidates[k], weight[i], i);
+    scene::parallel_for(weight.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        squares[i] = squared_error(candidates.front(), candidates[k], weight[i], i);
     });
+    const BoxSums errors(width, height, [&](std::size_t i) { return squares[i]; });
     std::size_t i = 0;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x, ++i) {

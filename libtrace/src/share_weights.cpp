@@ -20,10 +20,12 @@ float power_48(float x) {
   return x16 * x16 * x16;
 }
 
-/// About exp(-x), for a fifth of its time: (1 - x / 32)^32, nothing from there on.
-float falloff(float x) {
-  const float f16 = power_16(std::max(0.0f, 1.0f - x / kNothing));
-  return f16 * f16;
+/// About exp(-x), for a fifth of its time: (1 - x / 32)^32, nothing from there on. Of this the
+/// root.
+float falloff_root(float x) { return std::max(0.0f, 1.0f - x / kNothing); }
+float power_32(float x) {
+  const float x16 = power_16(x);
+  return x16 * x16;
 }
 
 std::array<std::vector<float>, 3> planes_of(const std::vector<Vec3f>& of) {
@@ -49,14 +51,15 @@ void find_weights(const WeightPlanes& planes, std::size_t p, std::size_t q, std:
   const float *depth = planes.depth.data(), *noise = planes.noise.data();
   const float *first = planes.luminance[0].data(), *second = planes.luminance[1].data();
   // Loops without branches that write to arrays of their own: the compiler does four pixels at
-  // once.
+  // once. Powers are a loop for themselves, of what has been cut at 0: in one loop they would be
+  // taken of what is cut as well, and overflow.
   constexpr std::size_t kBatch = 64;
-  std::array<float, kBatch> of_first, of_second;
+  std::array<float, kBatch> facing, flat, of_first, of_second;
   for (std::size_t begin = 0; begin < count; begin += kBatch) {
     const std::size_t end = std::min(count, begin + kBatch);
     for (std::size_t i = 0; i < end - begin; ++i) {
       const std::size_t a = p + begin + i, b = q + begin + i;
-      const float cosine = std::max(0.0f, nx[a] * nx[b] + (ny[a] * ny[b] + nz[a] * nz[b]));
+      facing[i] = std::max(0.0f, nx[a] * nx[b] + (ny[a] * ny[b] + nz[a] * nz[b]));
       const float dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a];
       const float above_a = std::abs(dx * nx[a] + (dy * ny[a] + dz * nz[a]));
       const float above_b = std::abs(dx * nx[b] + (dy * ny[b] + dz * nz[b]));
@@ -66,7 +69,7 @@ void find_weights(const WeightPlanes& planes, std::size_t p, std::size_t q, std:
           height * height /
           (kPlane * kPlane * (dx * dx + (dy * dy + dz * dz)) + rounding * rounding + kTiny);
       const float nearer = std::min(depth[a], depth[b]);  // 0: nothing there
-      const float surface = nearer > 0.0f ? power_48(cosine) * falloff(off_plane) : 0.0f;
+      flat[i] = nearer > 0.0f ? falloff_root(off_plane) : 0.0f;
       // Harmonic mean of the noise: a pixel that is sure of its light does not take from one that
       // is not, as next to a lamp that nearly touches a ceiling. Without noise only the same light
       // is alike.
@@ -77,8 +80,13 @@ void find_weights(const WeightPlanes& planes, std::size_t p, std::size_t q, std:
         const float certain = d == 0.0f ? 0.0f : kNothing;
         return both > 0.0f ? scale * d * d : certain;
       };
-      of_first[i] = factor * surface * falloff(unlike(first[a] - first[b]));
-      of_second[i] = factor * surface * falloff(unlike(second[a] - second[b]));
+      of_first[i] = falloff_root(unlike(first[a] - first[b]));
+      of_second[i] = falloff_root(unlike(second[a] - second[b]));
+    }
+    for (std::size_t i = 0; i < end - begin; ++i) {
+      const float surface = power_48(facing[i]) * power_32(flat[i]);
+      of_first[i] = factor * surface * power_32(of_first[i]);
+      of_second[i] = factor * surface * power_32(of_second[i]);
     }
     std::copy_n(of_first.begin(), end - begin, weights[0] + begin);
     std::copy_n(of_second.begin(), end - begin, weights[1] + begin);

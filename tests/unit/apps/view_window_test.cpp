@@ -163,11 +163,13 @@ TEST(ViewWindow, LargeMeshesAnswerAtOnceAndSettle) {
   EXPECT_TRUE(window.at_rest());
   EXPECT_GT(window.stage().picture().label_count(), 0U);
   window.interactor().SetEventInformation(kWidth / 2, kHeight / 2);
+  const auto before = std::chrono::steady_clock::now();
   window.interactor().InvokeEvent(vtkCommand::MouseWheelForwardEvent);
   EXPECT_FALSE(window.at_rest());
   EXPECT_EQ(window.stage().picture().label_count(), 0U);
   window.poll();
-  EXPECT_FALSE(window.at_rest());
+  const auto taken = std::chrono::steady_clock::now() - before;
+  EXPECT_TRUE(!window.at_rest() || taken > std::chrono::milliseconds(240));  // a slow machine
   std::this_thread::sleep_for(std::chrono::milliseconds(260));
   window.poll();
   EXPECT_TRUE(window.at_rest());

@@ -84,5 +84,17 @@ TEST(RayQuery, BatchesAnswerLikeSingleRays) {
   EXPECT_FALSE(hits[80].found());
 }
 
+// The cross product of edges as they are over- or underflows at the ends of this range.
+TEST(SurfacePoint, FacetsOfAnySizeHaveTheirNormal) {
+  for (const float size : {1e-25f, 1e-18f, 1e-12f, 1e-6f, 1.0f, 1e6f, 1e12f, 1e18f})
+    for (const float height : {1.0f, 1e-5f}) {
+      test::SceneMaker maker;
+      const auto m = maker.material(test::diffuse(0.5));
+      maker.object(m, {{0, 0, 0}, {size, 0, 0}, {0.5f * size, height * size, 0}}, {{0, 1, 2}});
+      const SurfacePoint p = surface_point(maker.take(), ObjectId(std::size_t{0}), 0, 0.3f, 0.3f);
+      EXPECT_LT((p.ng - Vec3f::UnitZ()).norm(), 1e-6f) << size << ' ' << height;
+    }
+}
+
 }  // namespace
 }  // namespace atrium::scene
