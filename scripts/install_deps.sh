@@ -11,7 +11,7 @@ set -eu
 build="g++ cmake ninja-build ccache pkg-config
   libembree-dev libtbb-dev libeigen3-dev libopenmesh-dev libosd-dev libopenimageio-dev libvtk9-dev libx11-dev
   fonts-dejavu-core
-  libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libtinygltf-dev libtinyobjloader-dev
+  libcli11-dev nlohmann-json3-dev libyaml-dev libtinygltf-dev libtinyobjloader-dev
   zlib1g-dev"
 web="nodejs npm"
 test="libgtest-dev libbenchmark-dev xvfb xauth chromium python3"

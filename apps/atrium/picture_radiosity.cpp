@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "material/error.h"
 #include "radiosity_pass.h"
@@ -110,6 +111,11 @@ bool PictureRadiosity::may_refine() const {
   // Frames of a walk must not depend on which of them this run makes.
   return statistics_.solve && command_.path.empty() && settings_.error > 0.0 &&
          settings_.max_elements > 0 && refinements_ < kMostRefinements && !session_.interrupted();
+}
+
+double PictureRadiosity::field_expected() const {
+  const bool as_planned = statistics_.solve && statistics_.solve->complete && settings_.error > 0.0;
+  return as_planned ? kAim : std::numeric_limits<double>::infinity();
 }
 
 bool PictureRadiosity::refine(const trace::RenderResult& picture) {

@@ -24,6 +24,9 @@ class PictureRadiosity {
   [[nodiscard]] const std::vector<Pack>& packs() const { return packs_; }
   /// RenderOptions::field_share: solving again costs less than a picture that makes up for it.
   [[nodiscard]] double field_share() const { return may_refine() ? 0.5 : 1.0; }
+  /// RenderOptions::field_expected: what this run has solved is made for the error asked of its
+  /// pictures; of a solution from elsewhere, or one that was cut short, nothing is known.
+  [[nodiscard]] double field_expected() const;
   /// How often this run has solved again.
   [[nodiscard]] int refinements() const { return refinements_; }
   /// Solves again on more elements and to a smaller error, for a picture whose field_error is too

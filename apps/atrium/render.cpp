@@ -146,6 +146,7 @@ bool render_view(const Pictures& p, const ViewJob& job, std::size_t number, std:
   ViewSummary work;  // also of pictures that a finer solution makes again
   do {
     options.field_share = p.radiosity.field_share();
+    options.field_expected = p.radiosity.field_expected();
     options.check_seed = static_cast<std::uint64_t>(p.radiosity.refinements());
     const Stopwatch watch;
     result = trace_packs(p.session, c, options, p.loaded, p.radiosity.packs(), job.camera, share,

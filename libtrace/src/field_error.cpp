@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "error_scale.h"
 
@@ -59,6 +60,18 @@ FieldSquare mean_of(const std::vector<Region>& regions, double area) {
 }
 
 }  // namespace
+
+double likely_square(const FieldSquare& measured, double expected) {
+  const double prior = expected * expected;
+  const double s = measured.error;
+  if (!(s > 0.0) || std::isinf(prior)) return std::max(0.0, measured.mean);
+  // The product of both densities is a normal one of this mean, cut off at zero.
+  const double z = (measured.mean - s * s / prior) / s;
+  if (z < -20.0) return s / -z;  // the tail falls as exp(z x / s)
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+  const double positive = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+  return s * (z + density / positive);
+}
 
 FieldSquare field_square(const PictureSamples& s, const std::vector<double>& scale, double other) {
   FieldSquare found;

@@ -12,6 +12,13 @@ struct FieldSquare {
   double error = 0.0;  ///< its standard error
 };
 
+/// What this says of the mean of e^2 to somebody who expects an RMS error of about `expected`: the
+/// mean of the posterior distribution, with an exponential prior of mean expected^2 and the
+/// measurement's error taken as normal. A measurement that is far more certain than that counts as
+/// it is, at least 0; one that is far less certain counts little. Expecting infinity, nothing is
+/// known before; nor is it if the measurement has no error.
+[[nodiscard]] double likely_square(const FieldSquare& measured, double expected);
+
 /// The samples that check the field say how much light each pixel misses or has too much
 /// (PictureSamples::missed), right in the mean but very noisy. The field's error has little detail
 /// - gather rays from neighbouring pixels end in the same places - so means over regions tell it:

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "error_scale.h"
-#include "share_choice.h"
-
 namespace atrium::trace {
 namespace {
 
@@ -50,6 +47,7 @@ void Film::add_body(Body& body, const Pixel& pixel, std::size_t replicate,
               static_cast<float>(pixel.replicate_count[replicate]));
   }
   move_mean(body.albedo, basis.to_rgb(sample.body_albedo), n);
+  move_mean(body.field, basis.to_rgb(sample.body_field), n);
   body.position += (sample.position - body.position) / n;
 }
 
@@ -105,85 +103,6 @@ template void Film::add<4>(int, int, std::size_t, const PixelSample<4>&,
                            const material::SpectralBasis&, scene::Counters&);
 template void Film::add<8>(int, int, std::size_t, const PixelSample<8>&,
                            const material::SpectralBasis&, scene::Counters&);
-
-// A pixel that only partly shows a body keeps its own samples.
-bool Film::usable(std::size_t i) const {
-  const Pixel& p = pixels_[i];
-  return std::all_of(p.replicate_count.begin(), p.replicate_count.end(),
-                     [](std::uint32_t n) { return n > 0; }) &&
-         p.hits == p.count && bodies_[i].albedo.min() > 1e-4f;
-}
-
-ShareGuides Film::guides() const {
-  ShareGuides g{width_, height_, {}, {}, {}};
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    g.position.push_back(bodies_[i].position);
-    g.normal.emplace_back(pixels_[i].normal.data());
-    g.depth.push_back(usable(i) ? pixels_[i].depth : 0.0f);
-  }
-  return g;
-}
-
-// A power of two that brings the brightest pixel below 1: squares are numbers whatever the unit.
-float Film::light_unit() const {
-  double most = 0.0;
-  for (const Pixel& p : pixels_) most = std::max({most, p.mean[0], p.mean[1], p.mean[2]});
-  return most > 0.0 ? static_cast<float>(std::exp2(std::ceil(std::log2(most)))) : 1.0f;
-}
-
-Illumination Film::illumination(std::size_t part, float unit) const {
-  Illumination light;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const Body& body = bodies_[i];
-    const bool used = usable(i);
-    for (std::size_t r = 0; r < kReplicates; ++r)
-      light.replicate[r].push_back(used ? Rgb::generate([&](int c) {
-        return body.radiance[part][r][c] / unit / body.albedo[c];
-      })
-                                        : Rgb::zero());
-    const double y = static_cast<double>(luminance(body.albedo)) * static_cast<double>(unit);
-    const double n = pixels_[i].count;
-    light.variance.push_back(
-        used ? static_cast<float>(2.0 * body.m2[part] / (n * (n - 1.0) * y * y)) : 0.0f);
-  }
-  return light;
-}
-
-// What illumination that is wrong by one unit means for the error of the picture, by pixel.
-std::vector<Rgb> Film::share_weights(float unit) const {
-  std::vector<double> y;
-  for (const Pixel& p : pixels_)
-    y.push_back(std::max(0.0, 0.2126 * p.mean[0] + 0.7152 * p.mean[1] + 0.0722 * p.mean[2]));
-  const std::vector<double> scale = error_scales(width_, height_, y);
-  std::vector<Rgb> weights(pixels_.size());
-  for (std::size_t i = 0; i < pixels_.size(); ++i)
-    if (scale[i] > 0.0)
-      weights[i] = bodies_[i].albedo * static_cast<float>(static_cast<double>(unit) / scale[i]);
-  return weights;
-}
-
-void Film::share() {
-  const ShareGuides where = guides();
-  const float unit = light_unit();
-  const std::vector<Rgb> weights = share_weights(unit);
-  changes_.assign(pixels_.size(), {});
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const std::vector<Illumination> lights = share_by_levels(where, illumination(part, unit));
-    const std::vector<std::uint8_t> choice = choose_shares(width_, height_, lights, weights);
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-      if (choice[i] > 0 && usable(i)) take_shared(i, part, lights[choice[i]], unit);
-  }
-}
-
-void Film::take_shared(std::size_t i, std::size_t part, const Illumination& light, float unit) {
-  const Body& body = bodies_[i];
-  for (std::size_t r = 0; r < kReplicates; ++r) {
-    const Rgb change = light.replicate[r][i] * body.albedo * unit - body.radiance[part][r];
-    changes_[i].replicate[r] += change;
-    changes_[i].part[part] += change * (static_cast<float>(pixels_[i].replicate_count[r]) /
-                                        static_cast<float>(pixels_[i].count));
-  }
-}
 
 Rgb Film::mean(std::size_t i) const {
   const Pixel& p = pixels_[i];

@@ -15,6 +15,8 @@
 
 namespace atrium::trace {
 
+class ShareChoice;
+
 /// Running means of all layers; every pixel belongs to one task at a time.
 class Film {
  public:
@@ -71,13 +73,14 @@ class Film {
     std::uint32_t count = 0;
     std::uint32_t hits = 0;
   };
-  static constexpr std::size_t kParts = 2;  // direct, indirect
+  static constexpr std::size_t kParts = 2, kIndirect = 1;  // the other is direct
   /// Light from a surface's body by part and replicate, and what it needs to be shared.
   struct Body {
     std::array<std::array<Rgb, kReplicates>, kParts> radiance;
     std::array<double, kParts> m2{};  // of luminance
     std::array<Rgb, kParts> mean;
     Rgb albedo;
+    Rgb field;  // what the field says of the indirect part
     Vec3f position = Vec3f::Zero();
   };
   /// What sharing changed, by pixel.
@@ -94,8 +97,12 @@ class Film {
   [[nodiscard]] float light_unit() const;
   [[nodiscard]] Illumination illumination(std::size_t part, float unit) const;
   [[nodiscard]] std::vector<Rgb> share_weights(float unit) const;
+  [[nodiscard]] std::vector<Rgb> field_illumination(float unit) const;
+  void offer_by_field(const ShareGuides& where, const std::vector<Rgb>& field,
+                      const Illumination& own, ShareChoice& choice) const;
   void share();
-  void take_shared(std::size_t pixel, std::size_t part, const Illumination& light, float unit);
+  void take_shared(std::size_t pixel, std::size_t part, std::size_t half, const Illumination& light,
+                   float unit);
   [[nodiscard]] Rgb mean(std::size_t pixel) const;
   [[nodiscard]] Rgb term(std::size_t pixel, std::size_t term) const;
   [[nodiscard]] float replicate_factor(std::size_t pixel, std::size_t half) const;
@@ -106,9 +113,9 @@ class Film {
 
   int width_, height_;
   std::vector<Pixel> pixels_;
-  std::vector<Body> bodies_;                    // empty if nothing is shared
-  std::vector<Change> changes_;                 // as last developed; empty as bodies_
-  std::vector<std::array<Rgb, kTerms>> terms_;  // empty without components
+  std::vector<Body> bodies_;                          // empty if nothing is shared
+  std::vector<Change> changes_;                       // as last developed; empty as bodies_
+  std::vector<std::array<Rgb, kTerms>> terms_;        // empty without components
   std::vector<std::array<Rgb, kReplicates>> missed_;  // by the field; empty without checks
   std::optional<ClassFilm> classes_;
   std::optional<SplatFilm> splats_;

@@ -93,12 +93,15 @@ PixelSample<N> trace_hybrid(const View<N>& view, const scene::Ray& camera_ray, G
       if (check != nullptr && !gathers) {
         const FieldRadiance<N> read = field.radiance(wo, {false, false, true});
         out.field_missed +=
-            beta * (BodyPath<N>(view, *check, counters).indirect_light(*hit, -ray.direction, media) -
-                    read.reflected - read.transmitted);
+            beta *
+            (BodyPath<N>(view, *check, counters).indirect_light(*hit, -ray.direction, media) -
+             read.reflected - read.transmitted);
       }
       // What the field knows needs no sharing: what samples find beside it has less shape.
-      if (depth == 0 && gathers && view.options.share_samples)
-        out.body_indirect -= field.reflected(wo, {false, false, true});
+      if (depth == 0 && gathers && view.options.share_samples) {
+        out.body_field = field.reflected(wo, {false, false, true});
+        out.body_indirect -= out.body_field;
+      }
       const auto take = [&](const Gathered<N>& g) {
         add(depth, g.reflected ? Term::DirectReflection : Term::DirectTransmission, g.straight);
         add(depth, g.reflected ? Term::IndirectReflection : Term::IndirectTransmission, g.indirect);

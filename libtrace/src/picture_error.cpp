@@ -83,7 +83,7 @@ double bias_of_squares(const PictureSamples& s, const std::vector<double>& scale
 
 }  // namespace
 
-ErrorEstimate estimate_error(const PictureSamples& s) {
+ErrorEstimate estimate_error(const PictureSamples& s, double expected_field) {
   const std::vector<double> scale = scales_of(s);
   const std::size_t n = s.mean.size();
   ErrorEstimate e;
@@ -109,7 +109,7 @@ ErrorEstimate estimate_error(const PictureSamples& s) {
   e.noise = std::sqrt(noise);
   e.bias = std::sqrt(bias);
   const FieldSquare field = s.checked() ? field_square(s, scale, noise + bias) : FieldSquare{};
-  const double field_part = std::max(0.0, field.mean);
+  const double field_part = likely_square(field, expected_field);
   e.field = std::sqrt(field_part);
   e.least_field = std::sqrt(std::max(0.0, field.mean - kCertain * field.error));
   e.value = std::sqrt(noise + bias + field_part);

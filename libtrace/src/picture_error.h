@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "picture_samples.h"
@@ -23,7 +24,10 @@ struct ErrorEstimate {
 /// neighbouring pixels is looked for. Both are expectations of squares over many pixels: of a
 /// picture of n pixels the noise is known to about sqrt(1 / n), the bias to sqrt(3 / n) of what the
 /// picture would have without sharing.
-[[nodiscard]] ErrorEstimate estimate_error(const PictureSamples& samples);
+/// \param expected_field  what the field's own error is thought to be before anything checks it
+/// (field_error.h).
+[[nodiscard]] ErrorEstimate estimate_error(
+    const PictureSamples& samples, double expected_field = std::numeric_limits<double>::infinity());
 
 /// RMS error of every pixel and channel, smoothed over 5x5 pixels: for the layers stderr.*.
 [[nodiscard]] std::vector<Rgb> error_layer(const PictureSamples& samples);

@@ -34,9 +34,9 @@ struct PixelSample {
   Vec3f normal = Vec3f::Zero();
   float depth = 0.0f;  ///< [m] along the ray; 0: nothing hit
 
-  // For sharing between pixels: of C1 what the first surface's body reflects, and of C2 how much
-  // more than the interpolated field says (the expectation may be negative).
-  Spectrum<N> body_direct, body_indirect;
+  // For sharing between pixels: of C1 what the first surface's body reflects, of C2 how much more
+  // than the interpolated field says (the expectation may be negative), and what that says.
+  Spectrum<N> body_direct, body_indirect, body_field;
   Spectrum<N> body_albedo;  ///< towards the viewer
   Vec3f position = Vec3f::Zero();
 

@@ -28,8 +28,14 @@ struct Errors {
   ErrorEstimate pixel, block;
 };
 
-Errors estimate(const PictureSamples& samples) {
-  return {estimate_error(samples), estimate_error(average_blocks(samples, kBlock))};
+/// What is expected of the field where `asked` is what may be wrong.
+double expected_field(const RenderOptions& o, double asked) {
+  return asked > 0.0 ? o.field_expected * asked : std::numeric_limits<double>::infinity();
+}
+
+Errors estimate(const PictureSamples& samples, const RenderOptions& o) {
+  return {estimate_error(samples, expected_field(o, o.error)),
+          estimate_error(average_blocks(samples, kBlock), expected_field(o, o.block_error))};
 }
 
 /// Worse of the two errors, relative to what is asked for.
@@ -132,7 +138,7 @@ class Rounds {
 
   void finish() {
     const PictureSamples samples = film_.develop();
-    const Errors e = estimate(samples);
+    const Errors e = estimate(samples, options_);
     result_.rounds = state_.rounds;
     result_.error_estimate = e.pixel.value;
     result_.bias_estimate = e.pixel.bias;
@@ -149,7 +155,7 @@ class Rounds {
   Errors develop() {
     const PictureSamples samples = film_.develop();
     if (preview_due()) show(samples);
-    return estimate(samples);
+    return estimate(samples, options_);
   }
 
   [[nodiscard]] bool preview_due() const {

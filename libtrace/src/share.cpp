@@ -3,30 +3,13 @@
 #include <array>
 #include <cmath>
 
-#include "scene/parallel.h"
+#include "for_pixels.h"
 #include "share_weights.h"
 
 namespace atrium::trace {
 namespace {
 
-constexpr int kLevels = 5;  // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
 constexpr std::array<float, 3> kSpline{0.375f, 0.25f, 0.0625f};  // B3
-
-template <class F>
-void for_rows(const ShareGuides& guides, F&& pixel) {
-  scene::parallel_for(static_cast<std::size_t>(guides.height), 4,
-                      [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t y = begin; y < end; ++y)
-                          for (int x = 0; x < guides.width; ++x) pixel(x, static_cast<int>(y));
-                      });
-}
-
-template <class F>
-void for_pixels(std::size_t count, F&& pixel) {
-  scene::parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) pixel(i);
-  });
-}
 
 /// What one half's weights average in a pixel, as the machine adds it four by four: the half's own
 /// mean (the guide), its luminance, and the two replicates of the other half.
@@ -53,9 +36,9 @@ struct Levels {
   std::vector<float> variance;
 };
 
-Levels pack(const Illumination& in) {
+Levels pack(const ShareGuides& guides, const Illumination& in) {
   Levels levels{std::vector<std::array<Guided, 2>>(in.variance.size()), in.variance};
-  for_pixels(in.variance.size(), [&](std::size_t i) {
+  for_pixels(guides.width, guides.height, [&](int, int, std::size_t i) {
     for (std::size_t h = 0; h < 2; ++h) {
       Guided& g = levels.light[i][h];
       const Rgb own = (in.replicate[2 * h][i] + in.replicate[2 * h + 1][i]) * 0.5f;
@@ -69,10 +52,10 @@ Levels pack(const Illumination& in) {
   return levels;
 }
 
-Illumination unpack(const Levels& levels) {
+Illumination unpack(const ShareGuides& guides, const Levels& levels) {
   Illumination out;
   for (auto& r : out.replicate) r.resize(levels.light.size());
-  for_pixels(levels.light.size(), [&](std::size_t i) {
+  for_pixels(guides.width, guides.height, [&](int, int, std::size_t i) {
     for (std::size_t h = 0; h < 2; ++h) {
       const Guided& g = levels.light[i][h];
       const std::size_t other = 2 * (1 - h);
@@ -88,13 +71,11 @@ Illumination unpack(const Levels& levels) {
 /// receive), so it is found once: by the pixel that comes first.
 class Level {
  public:
-  /// \param planes  of the guides; noise and luminance become those of this level.
-  Level(const ShareGuides& guides, const Levels& in, int step, WeightPlanes& planes)
-      : g_(guides), in_(in), step_(step), planes_(planes) {
-    planes.noise = blurred_variance();
-    for (std::vector<float>& luminance : planes.luminance) luminance.resize(in.light.size());
-    for_pixels(in.light.size(), [&](std::size_t i) {
-      for (std::size_t h = 0; h < 2; ++h) planes.luminance[h][i] = in.light[i][h].guide[3];
+  Level(const ShareGuides& guides, const Levels& in, int step)
+      : g_(guides), in_(in), step_(step), noise_{blurred_variance(), {}} {
+    for (std::vector<float>& luminance : noise_.luminance) luminance.resize(in.light.size());
+    for_pixels(g_.width, g_.height, [&](int, int, std::size_t i) {
+      for (std::size_t h = 0; h < 2; ++h) noise_.luminance[h][i] = in.light[i][h].guide[3];
     });
   }
 
@@ -153,7 +134,7 @@ class Level {
       const int dx = kTaps[t].dx * step_;
       const int first = std::max(0, -dx), end = std::min(g_.width, g_.width - dx);
       if (first >= end || row + kTaps[t].dy >= p.rows) continue;
-      find_weights(planes_, index(first, y), index(first + dx, y + kTaps[t].dy * step_),
+      find_weights(g_, noise_, index(first, y), index(first + dx, y + kTaps[t].dy * step_),
                    static_cast<std::size_t>(end - first), spline(kTaps[t]),
                    {pairs[t][0].data() + first, pairs[t][1].data() + first});
     }
@@ -212,13 +193,13 @@ class Level {
       }
     };
     std::vector<Sum> along(in_.variance.size());
-    for_rows(g_, [&](int x, int y) {
+    for_pixels(g_.width, g_.height, [&](int x, int y, std::size_t) {
       for (int qx = std::max(0, x - 2); qx <= std::min(g_.width - 1, x + 2); ++qx)
         if (const std::size_t q = index(qx, y); g_.depth[q] > 0.0f)
           along[index(x, y)].add(spline({qx - x, 0}), {in_.variance[q], 1.0f});
     });
     std::vector<float> blurred(in_.variance.size());
-    for_rows(g_, [&](int x, int y) {
+    for_pixels(g_.width, g_.height, [&](int x, int y, std::size_t) {
       Sum sum;
       for (int qy = std::max(0, y - 2); qy <= std::min(g_.height - 1, y + 2); ++qy)
         sum.add(spline({0, qy - y}), along[index(x, qy)]);
@@ -230,26 +211,27 @@ class Level {
   const ShareGuides& g_;
   const Levels& in_;
   int step_;
-  const WeightPlanes& planes_;
+  ShareNoise noise_;
 };
 
 }  // namespace
 
-std::vector<Illumination> share_by_levels(const ShareGuides& guides, Illumination illumination) {
-  Levels now = pack(illumination);
-  std::vector<Illumination> kept{std::move(illumination)};
+void share_by_levels(const ShareGuides& guides, const Illumination& illumination, int most,
+                     const std::function<void(Illumination&&)>& take) {
+  Levels now = pack(guides, illumination);
   Levels next = now;
-  WeightPlanes planes(guides);
-  for (int level = 0; level < kLevels; ++level) {
-    Level(guides, now, 1 << level, planes).run(next);
+  for (int level = 0; level < most; ++level) {
+    Level(guides, now, 1 << level).run(next);
     std::swap(now, next);
-    if (level == 0 || level == 2 || level == kLevels - 1) kept.push_back(unpack(now));
+    if (level % 2 == 0) take(unpack(guides, now));
   }
-  return kept;
 }
 
-Illumination share_illumination(const ShareGuides& guides, Illumination illumination) {
-  return std::move(share_by_levels(guides, std::move(illumination)).back());
+Illumination share_illumination(const ShareGuides& guides, const Illumination& illumination) {
+  Illumination last;
+  share_by_levels(guides, illumination, kShareLevels,
+                  [&](Illumination&& shared) { last = std::move(shared); });
+  return last;
 }
 
 }  // namespace atrium::trace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "material/frame.h"
@@ -12,9 +13,25 @@ namespace atrium::trace {
 /// What the first surface of each pixel looks like: where samples may be shared.
 struct ShareGuides {
   int width = 0, height = 0;
-  std::vector<Vec3f> position;  ///< mean over the pixel
-  std::vector<Vec3f> normal;    ///< mean shading normal; shorter than 1 at edges
-  std::vector<float> depth;     ///< [m]; 0: nothing there
+  // By pixel, row by row; vectors number by number, as weights are found for many pixels at once.
+  std::array<std::vector<float>, 3> positions = {};  ///< mean over the pixel
+  std::array<std::vector<float>, 3> normals = {};  ///< mean shading normal; shorter than 1 at edges
+  std::vector<float> depth = {};                   ///< [m]; 0: nothing there
+
+  /// The next pixel.
+  void add(const Vec3f& position, const Vec3f& normal, float depth_there) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      positions[c].push_back(position[static_cast<int>(c)]);
+      normals[c].push_back(normal[static_cast<int>(c)]);
+    }
+    depth.push_back(depth_there);
+  }
+  [[nodiscard]] Vec3f position(std::size_t pixel) const {
+    return {positions[0][pixel], positions[1][pixel], positions[2][pixel]};
+  }
+  [[nodiscard]] Vec3f normal(std::size_t pixel) const {
+    return {normals[0][pixel], normals[1][pixel], normals[2][pixel]};
+  }
 };
 
 /// Illumination (radiance over albedo) of every pixel by independent replicates, and the variance
@@ -32,10 +49,12 @@ struct Illumination {
 /// it loses no light where few samples are bright and many dark, the two replicates of a half stay
 /// independent, and what they differ by is the noise that is left.
 /// Edge-avoiding a-trous wavelet (Dammertz et al. 2010) guided by variance (Schied et al. 2017).
-[[nodiscard]] Illumination share_illumination(const ShareGuides& guides, Illumination illumination);
+[[nodiscard]] Illumination share_illumination(const ShareGuides& guides,
+                                              const Illumination& illumination);
 
-/// The light as it is and averaged by more and more levels of wavelets, up to all of them.
-[[nodiscard]] std::vector<Illumination> share_by_levels(const ShareGuides& guides,
-                                                        Illumination illumination);
+/// The light averaged by 1, 3 and 5 levels of wavelets. \param most  no more levels than that.
+void share_by_levels(const ShareGuides& guides, const Illumination& illumination, int most,
+                     const std::function<void(Illumination&&)>& take);
+inline constexpr int kShareLevels = 5;  // reach: 2 * (1 + 2 + 4 + 8 + 16) pixels
 
 }  // namespace atrium::trace

@@ -28,28 +28,16 @@ float power_32(float x) {
   return x16 * x16;
 }
 
-std::array<std::vector<float>, 3> planes_of(const std::vector<Vec3f>& of) {
-  std::array<std::vector<float>, 3> planes;
-  for (std::size_t c = 0; c < 3; ++c) {
-    planes[c].resize(of.size());
-    for (std::size_t i = 0; i < of.size(); ++i) planes[c][i] = of[i][static_cast<int>(c)];
-  }
-  return planes;
-}
-
 }  // namespace
 
-WeightPlanes::WeightPlanes(const ShareGuides& guides)
-    : normal(planes_of(guides.normal)), position(planes_of(guides.position)), depth(guides.depth) {}
-
-void find_weights(const WeightPlanes& planes, std::size_t p, std::size_t q, std::size_t count,
-                  float factor, const std::array<float*, 2>& weights) {
-  const float *nx = planes.normal[0].data(), *ny = planes.normal[1].data(),
-              *nz = planes.normal[2].data();
-  const float *x = planes.position[0].data(), *y = planes.position[1].data(),
-              *z = planes.position[2].data();
-  const float *depth = planes.depth.data(), *noise = planes.noise.data();
-  const float *first = planes.luminance[0].data(), *second = planes.luminance[1].data();
+void find_weights(const ShareGuides& guides, const ShareNoise& light, std::size_t p, std::size_t q,
+                  std::size_t count, float factor, const std::array<float*, 2>& weights) {
+  const float *nx = guides.normals[0].data(), *ny = guides.normals[1].data(),
+              *nz = guides.normals[2].data();
+  const float *x = guides.positions[0].data(), *y = guides.positions[1].data(),
+              *z = guides.positions[2].data();
+  const float *depth = guides.depth.data(), *noise = light.variance.data();
+  const float *first = light.luminance[0].data(), *second = light.luminance[1].data();
   // Loops without branches that write to arrays of their own: the compiler does four pixels at
   // once. Powers are a loop for themselves, of what has been cut at 0: in one loop they would be
   // taken of what is cut as well, and overflow.

@@ -81,7 +81,9 @@ void expect_agreement(const scene::Scene& scene) {
     // Of these the reference says that it lacks a part.
     const bool lacking = name == "LSDSE" || name == "LSDDSE" || name == "LDDDSE";
     EXPECT_GT(a.mean, b.mean - tolerance) << name;
-    if (!lacking) EXPECT_LT(a.mean, b.mean + tolerance) << name;
+    if (!lacking) {
+      EXPECT_LT(a.mean, b.mean + tolerance) << name;
+    }
     EXPECT_LT(error, 0.01 * whole) << name;
   }
   EXPECT_GT(layer(reference, "LSDE").mean, 0.01 * whole);

@@ -229,7 +229,7 @@ TEST(Continue, WhatDoesNotBelongTogetherIsRefused) {
   strange.field.nodes[0] = scene::SurfaceField::kNone;
   EXPECT_THROW((void)bench.run(o, 0, &strange), Error);
   scene::Scene s = furnished();
-  s.objects[7].to_scene.translation().x() += 0.1;
+  s.objects[7].to_scene.translation().x() += 0.1f;
   Bench another(std::move(s));
   EXPECT_THROW((void)another.run(o, 0, &old), Error);
 }

@@ -74,7 +74,7 @@ TEST(Rows, DecisionsByLightSamplesDoNotDarkenTheRoom) {
   double sum = 0.0;
   double squares = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const Solved s(closed_room(kReflectance), {.element_size = 0.25,
+    const Solved s(closed_room(static_cast<float>(kReflectance)), {.element_size = 0.25,
                                                .max_level = 0,
                                                .direct_samples = 16,
                                                .seed = static_cast<std::uint64_t>(seed)});
@@ -95,7 +95,7 @@ TEST(Rows, ManyRoundsStayWhereTheyWere) {
   SolveOptions options{.element_size = 0.5, .max_level = 0};
   for (const double error : {0.02, 0.002}) {
     options.error = error;
-    const Solved s(closed_room(kReflectance), options);
+    const Solved s(closed_room(static_cast<float>(kReflectance)), options);
     EXPECT_EQ(s.result.stopped_by, "error");
     EXPECT_NEAR(received(s) * (1.0 - kReflectance) / kCeiling, 1.0, 2 * error);
   }

@@ -15,13 +15,20 @@ class SceneMaker {
     model_.materials.push_back(std::move(m));
     return scene::MaterialId(model_.materials.size() - 1);
   }
+#ifndef __clang__
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // false alarm of GCC 12, optional variants
+#endif
   /// Lambertian, with emission (radiance) on the front only.
   scene::MaterialId diffuse(double reflectance, double emission = 0.0) {
     material::Material m;
     m.body_reflectance = reflectance;
     m.emission = emission;
-    return material(m);
+    return material(std::move(m));
   }
+#ifndef __clang__
+#pragma GCC diagnostic pop
+#endif
   void mesh(scene::MaterialId material, std::vector<Vec3d> positions,
             std::vector<scene::Triangle> triangles) {
     scene::MeshData data;

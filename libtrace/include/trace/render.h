@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,9 @@ struct RenderOptions {
   /// The share of the error asked for that the field's own may have: a picture where it is found to
   /// be larger stops by "radiosity". 1: only if samples cannot make up for it (99.9 % certain).
   double field_share = 1.0;
+  /// What the field's own error is expected to be, as a share of the error asked for. Checks are
+  /// noisy: the less certain they are, the more this counts in the estimate. Infinity: not known.
+  double field_expected = std::numeric_limits<double>::infinity();
   /// Which numbers check the field: others for another field, so that what one of them found by
   /// chance is not found again.
   std::uint64_t check_seed = 0;
@@ -71,13 +75,13 @@ struct RenderOptions {
   bool classes = false;     ///< layers by class of light paths (trace/light_classes.h)
   /// Takes what a later rendering needs to go on as if there had been no end: about once a minute
   /// and at the end. Method::Path only.
-  std::function<void(const std::vector<char>& state)> save_state;
+  std::function<void(const std::vector<char>& state)> save_state = {};
   /// State to go on from, of the same scene, basis, camera and options (samples, errors and time
   /// limit apart); null: from the beginning. Method::Path only.
   const std::vector<char>* state = nullptr;
   /// Shown the picture so far between passes over the image, at most every preview_seconds; empty:
   /// none is made. Changes nothing of the result.
-  std::function<void(const scene::Image&)> preview;
+  std::function<void(const scene::Image&)> preview = {};
   double preview_seconds = 2.0;
 };
 

@@ -1,13 +1,12 @@
 #include "yaml_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
-#include <sstream>
+#include <new>
 #include <unordered_set>
 
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/exceptions.h>
-#include <yaml-cpp/parser.h>
+#include <yaml.h>
 
 #include "import_util.h"
 #include "material/error.h"
@@ -23,45 +22,67 @@ struct Anchored {
   std::size_t depth = 0;   ///< levels below it
 };
 
-// Builds the tree from the parser's events.
-class Builder : public YAML::EventHandler {
+/// Nothing, as YAML 1.2 (core schema, 10.3.2) writes it.
+bool is_null(std::string_view text) {
+  constexpr std::array<std::string_view, 5> kNulls = {"", "~", "null", "Null", "NULL"};
+  return std::find(kNulls.begin(), kNulls.end(), text) != kNulls.end();
+}
+
+std::string word(const yaml_char_t* text) {
+  return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
+}
+
+std::string place_of(const std::string& name, std::size_t line, std::size_t column) {
+  return name + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": ";
+}
+
+/// Events of libyaml, one after the other.
+class Events {
+ public:
+  Events(const std::vector<std::uint8_t>& bytes, const std::string& name) : name_(name) {
+    if (yaml_parser_initialize(&parser_) == 0) throw std::bad_alloc();
+    yaml_parser_set_input_string(&parser_, bytes.data(), bytes.size());
+  }
+  Events(const Events&) = delete;
+  Events& operator=(const Events&) = delete;
+  ~Events() {
+    yaml_event_delete(&event_);
+    yaml_parser_delete(&parser_);
+  }
+  /// The next one; valid until the one after it. \throws Error
+  const yaml_event_t& next() {
+    yaml_event_delete(&event_);
+    if (yaml_parser_parse(&parser_, &event_) == 0) refuse();
+    return event_;
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    if (parser_.error == YAML_MEMORY_ERROR) throw std::bad_alloc();
+    // What cannot be decoded has no mark of its own.
+    const yaml_mark_t& mark =
+        parser_.error == YAML_READER_ERROR ? parser_.mark : parser_.problem_mark;
+    std::string what = parser_.problem != nullptr ? parser_.problem : "not YAML";
+    if (parser_.context != nullptr) what = std::string(parser_.context) + ": " + what;
+    throw Error(place_of(name_, mark.line, mark.column) + what);
+  }
+
+  const std::string& name_;
+  yaml_parser_t parser_{};
+  yaml_event_t event_{};
+};
+
+// Builds the tree of one document from the parser's events.
+class Builder {
  public:
   explicit Builder(std::string name) : name_(std::move(name)) {}
   [[nodiscard]] YamlNode take() { return std::move(root_); }
-  [[nodiscard]] bool filled() const { return filled_; }
 
-  void OnDocumentStart(const YAML::Mark&) override {}
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    add(make(YamlNode::Kind::Null, mark), anchor, {});
+  void read(Events& events) {
+    do {
+      take_event(events.next());
+    } while (!stack_.empty());
   }
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                const std::string& value) override {
-    YamlNode node = make(YamlNode::Kind::Scalar, mark);
-    node.text = value;
-    add(std::move(node), anchor, {});
-  }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    const auto known = anchors_.find(anchor);
-    if (known == anchors_.end()) fail(mark, "an alias within its own value");
-    const Anchored& named = known->second;
-    count(mark, named.values);
-    check_depth(mark, stack_.size() + named.depth);
-    YamlNode copy = named.node;
-    copy.line = mark.line + 1;
-    copy.column = mark.column + 1;
-    add(std::move(copy), 0, {named.values, named.depth});
-  }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value) override {
-    open(YamlNode::Kind::Sequence, mark, anchor);
-  }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                  YAML::EmitterStyle::value) override {
-    open(YamlNode::Kind::Map, mark, anchor);
-  }
-  void OnSequenceEnd() override { close(); }
-  void OnMapEnd() override { close(); }
 
  private:
   struct Size {
@@ -70,39 +91,76 @@ class Builder : public YAML::EventHandler {
   };
   struct Open {
     YamlNode node;
-    YAML::anchor_t anchor = 0;
+    std::string anchor;
     Size size = {};
     bool has_key = false;
     YamlNode::Entry entry = {};                 // the key, while its value is awaited
     std::unordered_set<std::string> keys = {};  // so far
   };
 
-  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
-    throw Error(name_ + ":" + std::to_string(mark.line + 1) + ":" +
-                std::to_string(mark.column + 1) + ": " + message);
+  void take_event(const yaml_event_t& event) {
+    const yaml_mark_t& mark = event.start_mark;
+    switch (event.type) {
+      case YAML_SCALAR_EVENT:
+        return scalar(mark, event.data.scalar);
+      case YAML_ALIAS_EVENT:
+        return alias(mark, word(event.data.alias.anchor));
+      case YAML_SEQUENCE_START_EVENT:
+        return open(YamlNode::Kind::Sequence, mark, word(event.data.sequence_start.anchor));
+      case YAML_MAPPING_START_EVENT:
+        return open(YamlNode::Kind::Map, mark, word(event.data.mapping_start.anchor));
+      default:
+        return close();  // of a sequence or a map
+    }
   }
-  void count(const YAML::Mark& mark, std::size_t values) {
+  using Scalar = decltype(yaml_event_t::data.scalar);
+  void scalar(const yaml_mark_t& mark, const Scalar& value) {
+    const std::string_view text(reinterpret_cast<const char*>(value.value), value.length);
+    const bool null = value.style == YAML_PLAIN_SCALAR_STYLE && is_null(text);
+    YamlNode node = make(null ? YamlNode::Kind::Null : YamlNode::Kind::Scalar, mark);
+    if (!null) node.text = text;
+    add(std::move(node), word(value.anchor), {});
+  }
+  void alias(const yaml_mark_t& mark, const std::string& anchor) {
+    if (std::any_of(stack_.begin(), stack_.end(),
+                    [&](const Open& whole) { return whole.anchor == anchor; }))
+      fail(mark, "an alias within its own value");
+    const auto known = anchors_.find(anchor);
+    if (known == anchors_.end()) fail(mark, "the alias '" + anchor + "' names nothing before it");
+    const Anchored& named = known->second;
+    count(mark, named.values);
+    check_depth(mark, stack_.size() + named.depth);
+    YamlNode copy = named.node;
+    copy.line = static_cast<int>(mark.line) + 1;
+    copy.column = static_cast<int>(mark.column) + 1;
+    add(std::move(copy), {}, {named.values, named.depth});
+  }
+
+  [[noreturn]] void fail(const yaml_mark_t& mark, const std::string& message) const {
+    throw Error(place_of(name_, mark.line, mark.column) + message);
+  }
+  void count(const yaml_mark_t& mark, std::size_t values) {
     values_ += values;
     if (values_ > limits::kYamlValues)
       fail(mark, "more than " + std::to_string(limits::kYamlValues) +
                      " values (aliases, and what they may name, included)");
   }
-  YamlNode make(YamlNode::Kind kind, const YAML::Mark& mark) {
+  YamlNode make(YamlNode::Kind kind, const yaml_mark_t& mark) {
     mark_ = mark;
     count(mark, 1);
     YamlNode node;
     node.kind = kind;
-    node.line = mark.line + 1;
-    node.column = mark.column + 1;
+    node.line = static_cast<int>(mark.line) + 1;
+    node.column = static_cast<int>(mark.column) + 1;
     return node;
   }
-  void check_depth(const YAML::Mark& mark, std::size_t levels) const {
+  void check_depth(const yaml_mark_t& mark, std::size_t levels) const {
     if (levels > limits::kYamlDepth)
       fail(mark, "nested deeper than " + std::to_string(limits::kYamlDepth) + " levels");
   }
-  void open(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
+  void open(YamlNode::Kind kind, const yaml_mark_t& mark, std::string anchor) {
     check_depth(mark, stack_.size() + 1);
-    stack_.push_back({make(kind, mark), anchor});
+    stack_.push_back({make(kind, mark), std::move(anchor)});
   }
   void close() {
     Open done = std::move(stack_.back());
@@ -111,9 +169,9 @@ class Builder : public YAML::EventHandler {
     add(std::move(done.node), done.anchor, done.size);
   }
 
-  void add(YamlNode node, YAML::anchor_t anchor, Size size) {
+  void add(YamlNode node, const std::string& anchor, Size size) {
     size.values += node.text.size() / 64;  // a long text is more than a word
-    if (anchor != 0) {
+    if (!anchor.empty()) {
       // A copy of its own: anchors within anchors are copied once per level.
       count(mark_, size.values);
       anchors_[anchor] = {node, size.values, size.depth};
@@ -125,7 +183,6 @@ class Builder : public YAML::EventHandler {
     }
     if (stack_.empty()) {
       root_ = std::move(node);
-      filled_ = true;
     } else if (stack_.back().node.kind == YamlNode::Kind::Sequence) {
       stack_.back().node.items.push_back(std::move(node));
     } else {
@@ -150,33 +207,27 @@ class Builder : public YAML::EventHandler {
   }
 
   std::string name_;
-  YAML::Mark mark_;
+  yaml_mark_t mark_{};
   YamlNode root_;
-  bool filled_ = false;
   std::size_t values_ = 0;
   std::vector<Open> stack_;
-  std::map<YAML::anchor_t, Anchored> anchors_;
+  std::map<std::string, Anchored> anchors_;
 };
 
 }  // namespace
 
 YamlNode load_yaml(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(file, limits::kYamlBytes);
-  std::istringstream in(std::string(bytes.begin(), bytes.end()));
-  Builder builder(file.string());
-  try {
-    YAML::Parser parser(in);
-    if (!parser.HandleNextDocument(builder) || !builder.filled()) {
-      throw Error(file.string() + ":1:1: the file is empty");
-    }
-    Builder rest(file.string());
-    if (parser.HandleNextDocument(rest)) {
-      throw Error(file.string() + ": more than one YAML document");
-    }
-  } catch (const YAML::Exception& e) {
-    throw Error(file.string() + ":" + std::to_string(e.mark.line + 1) + ":" +
-                std::to_string(e.mark.column + 1) + ": " + e.msg);
-  }
+  const std::string name = file.string();
+  Events events(bytes, name);
+  events.next();  // start of the stream
+  if (events.next().type != YAML_DOCUMENT_START_EVENT)
+    throw Error(name + ":1:1: the file is empty");
+  Builder builder(name);
+  builder.read(events);
+  events.next();  // end of the document
+  if (events.next().type != YAML_STREAM_END_EVENT)
+    throw Error(name + ": more than one YAML document");
   return builder.take();
 }
 

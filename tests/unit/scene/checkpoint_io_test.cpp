@@ -66,7 +66,7 @@ TEST(CheckpointIo, NamesWhatDiffers) {
   const Checkpoint kept = sample();
   check_checkpoint(kept, sample(), "f");
   Checkpoint now = sample();
-  now.made_with[1].second = "7";
+  now.made_with[1] = {"seed", "7"};
   EXPECT_EQ(message_of([&] { check_checkpoint(kept, now, "f"); }),
             "f: its picture has another seed (1, not 7)");
   now = sample();

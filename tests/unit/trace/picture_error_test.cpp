@@ -1,4 +1,5 @@
 #include "picture_error.h"
+#include "field_error.h"
 
 #include <cmath>
 #include <random>
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "error_scale.h"
+#include "field_error.h"
 
 namespace atrium::trace {
 namespace {
@@ -136,6 +138,40 @@ TEST(PictureError, LayerAndEstimateAgree) {
   for (std::size_t i = 0; i < kPixels; ++i)
     sum += std::pow(static_cast<double>(layer[i][1]) / scale[i], 2.0);
   EXPECT_NEAR(std::sqrt(sum / kPixels), estimate_error(s).value, 0.03 * 0.05);
+}
+
+// The mean of the posterior, against its integrals.
+TEST(LikelySquare, IsTheMeanOfItsDistribution) {
+  constexpr double kExpected = 0.008, kPrior = kExpected * kExpected;
+  for (const double mean : {-4e-4, 0.0, 1e-5, 1e-4, 1.5e-3})
+    for (const double error : {1e-6, 3e-5, 5e-4}) {
+      const FieldSquare measured{mean, error};
+      // From the largest value of the density on, so that nothing underflows.
+      const double top = std::max(0.0, mean - error * error / kPrior);
+      const auto exponent = [&](double x) {
+        return -0.5 * std::pow((x - mean) / error, 2.0) - x / kPrior;
+      };
+      const double width = std::min(error, top > 0.0 ? error : kPrior);
+      double sum = 0.0, first = 0.0;
+      for (int i = 0; i < 400000; ++i) {
+        const double x = std::max(0.0, top - 20.0 * width) + (i + 0.5) * 1e-4 * width;
+        const double density = std::exp(exponent(x) - exponent(top));
+        sum += density;
+        first += density * x;
+      }
+      EXPECT_NEAR(likely_square(measured, kExpected) / (first / sum), 1.0, 2e-3)
+          << mean << " " << error;
+    }
+}
+
+TEST(LikelySquare, CertainMeasurementsCountAsTheyAre) {
+  EXPECT_NEAR(likely_square({1e-3, 1e-7}, 0.008), 1e-3, 1e-8);
+  EXPECT_LT(likely_square({1.5e-3, 5e-4}, 0.008), 2e-4) << "no certainty, no surprise";
+  EXPECT_NEAR(likely_square({0.0, 1.0}, 0.008), 6.4e-5, 1e-6) << "what is expected";
+  for (const double unknown : {0.0, 1e-3})
+    EXPECT_EQ(likely_square({unknown, 5e-4}, std::numeric_limits<double>::infinity()), unknown);
+  EXPECT_EQ(likely_square({-1e-3, 5e-4}, std::numeric_limits<double>::infinity()), 0.0);
+  EXPECT_EQ(likely_square({1e-3, 0.0}, 0.008), 1e-3);
 }
 
 }  // namespace

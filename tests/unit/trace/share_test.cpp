@@ -12,13 +12,10 @@ constexpr int kSize = 64;
 
 // A wall that faces the camera, one metre per pixel.
 ShareGuides flat_guides() {
-  ShareGuides g{kSize, kSize, {}, {}, {}};
+  ShareGuides g{kSize, kSize};
   for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      g.position.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
-      g.normal.emplace_back(Vec3f::UnitZ());
-      g.depth.push_back(50.0f);
-    }
+    for (int x = 0; x < kSize; ++x)
+      g.add({static_cast<float>(x), static_cast<float>(y), 0.0f}, Vec3f::UnitZ(), 50.0f);
   return g;
 }
 
@@ -118,10 +115,12 @@ TEST(Share, OtherSurfacesAreNotMixed) {
     for (int y = 0; y < kSize; ++y)
       for (int x = kSize / 2; x < kSize; ++x) {
         const auto i = static_cast<std::size_t>(y * kSize + x);
-        if (corner)
-          g.normal[i] = Vec3f::UnitX();
-        else
-          g.position[i].z() = 30.0f;
+        if (corner) {
+          g.normals[0][i] = 1.0f;
+          g.normals[2][i] = 0.0f;
+        } else {
+          g.positions[2][i] = 30.0f;
+        }
       }
     const Illumination in = noisy([](int x, int) { return x < kSize / 2 ? 0.0f : 1.0f; }, 1.0f);
     const Illumination out = share_illumination(g, in);

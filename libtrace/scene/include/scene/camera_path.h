@@ -15,7 +15,7 @@ struct CameraKey {
   Vec3d direction = -Vec3d::UnitZ();  ///< not zero
   Vec3d up = Vec3d::UnitY();          ///< not along the direction
   double yfov = 0.9;                  ///< vertical field of view [rad]
-  std::optional<double> time;         ///< [s]; all keys have one, or none
+  std::optional<double> time = {};    ///< [s]; all keys have one, or none
 };
 
 /// A smooth way through key frames, for a perspective camera.

@@ -59,7 +59,7 @@ struct ProfileLight {
 /// Looks along -z of its frame (glTF); its place is to_scene's translation.
 struct Light {
   std::string name;
-  std::string light_group;  ///< that the scene puts it in, empty: none said; see light_groups.h
+  std::string light_group = {};  ///< that the scene puts it in, empty: none said; see light_groups.h
   std::variant<PointLight, SpotLight, DirectionalLight, ProfileLight> kind;
   Eigen::Affine3d to_scene = Eigen::Affine3d::Identity();
 };
@@ -74,7 +74,7 @@ struct Environment {
   /// Images are latitude-longitude, of the channels R, G, B, linear, finite and >= 0; the direction
   /// of a point (u, v) is u = 0.5 + atan2(x, -z) / (2 pi), v = acos(y) / pi.
   std::variant<UniformSky, Image, SkyDome> pattern;
-  std::string light_group;  ///< as Light::light_group
+  std::string light_group = {};  ///< as Light::light_group
   Eigen::Affine3d to_scene = Eigen::Affine3d::Identity();
 };
 
