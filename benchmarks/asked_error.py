@@ -62,7 +62,7 @@ def measure(args, scene, reference, kind, asked, folder):
 def row(scene, kind, asked, runs):
     found = sorted(found[kind]["value"] / asked for _, _, found in runs)
     stated = [stats["error"]["estimate" if kind == "pixel" else "estimate_block"] / asked for _, stats, _ in runs]
-    bias = [100 * found["bias"]["value"] for _, _, found in runs]
+    bias = [100 * found["bias"] for _, _, found in runs]
     missed = sum(stats["error"]["stopped_by"] != "error" for _, stats, _ in runs)
     worst = found[math.ceil(0.95 * len(found)) - 1]
     cells = [scene.stem, f"{100 * asked:g} % of {kind}s",
