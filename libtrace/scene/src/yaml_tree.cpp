@@ -32,8 +32,22 @@ std::string word(const yaml_char_t* text) {
   return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
 }
 
-std::string place_of(const std::string& name, std::size_t line, std::size_t column) {
-  return name + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": ";
+/// libyaml counts from 0.
+void set_place(YamlNode& node, const yaml_mark_t& mark) {
+  node.line = static_cast<int>(mark.line) + 1;
+  node.column = static_cast<int>(mark.column) + 1;
+}
+
+[[noreturn]] void fail_at(const std::string& name, const YamlNode& node,
+                          const std::string& message) {
+  throw Error(name + ":" + std::to_string(node.line) + ":" + std::to_string(node.column) + ": " +
+              message);
+}
+[[noreturn]] void fail_at(const std::string& name, const yaml_mark_t& mark,
+                          const std::string& message) {
+  YamlNode there;
+  set_place(there, mark);
+  fail_at(name, there, message);
 }
 
 /// Events of libyaml, one after the other.
@@ -64,7 +78,7 @@ class Events {
         parser_.error == YAML_READER_ERROR ? parser_.mark : parser_.problem_mark;
     std::string what = parser_.problem != nullptr ? parser_.problem : "not YAML";
     if (parser_.context != nullptr) what = std::string(parser_.context) + ": " + what;
-    throw Error(place_of(name_, mark.line, mark.column) + what);
+    fail_at(name_, mark, what);
   }
 
   const std::string& name_;
@@ -119,25 +133,29 @@ class Builder {
     const bool null = value.style == YAML_PLAIN_SCALAR_STYLE && is_null(text);
     YamlNode node = make(null ? YamlNode::Kind::Null : YamlNode::Kind::Scalar, mark);
     if (!null) node.text = text;
-    add(std::move(node), word(value.anchor), {});
+    const std::string anchor = word(value.anchor);
+    anchors_.erase(anchor);
+    add(std::move(node), anchor, {});
   }
   void alias(const yaml_mark_t& mark, const std::string& anchor) {
-    if (std::any_of(stack_.begin(), stack_.end(),
-                    [&](const Open& whole) { return whole.anchor == anchor; }))
-      fail(mark, "an alias within its own value");
     const auto known = anchors_.find(anchor);
-    if (known == anchors_.end()) fail(mark, "the alias '" + anchor + "' names nothing before it");
+    if (known == anchors_.end()) {
+      const bool own = std::any_of(stack_.begin(), stack_.end(),
+                                   [&](const Open& whole) { return whole.anchor == anchor; });
+      fail(mark, own ? "an alias within its own value"
+                     : "the alias '" + anchor + "' names nothing before it");
+    }
     const Anchored& named = known->second;
     count(mark, named.values);
     check_depth(mark, stack_.size() + named.depth);
     YamlNode copy = named.node;
-    copy.line = static_cast<int>(mark.line) + 1;
-    copy.column = static_cast<int>(mark.column) + 1;
+    set_place(copy, mark);
     add(std::move(copy), {}, {named.values, named.depth});
   }
 
-  [[noreturn]] void fail(const yaml_mark_t& mark, const std::string& message) const {
-    throw Error(place_of(name_, mark.line, mark.column) + message);
+  template <class Place>
+  [[noreturn]] void fail(const Place& place, const std::string& message) const {
+    fail_at(name_, place, message);
   }
   void count(const yaml_mark_t& mark, std::size_t values) {
     values_ += values;
@@ -150,8 +168,7 @@ class Builder {
     count(mark, 1);
     YamlNode node;
     node.kind = kind;
-    node.line = static_cast<int>(mark.line) + 1;
-    node.column = static_cast<int>(mark.column) + 1;
+    set_place(node, mark);
     return node;
   }
   void check_depth(const yaml_mark_t& mark, std::size_t levels) const {
@@ -160,6 +177,7 @@ class Builder {
   }
   void open(YamlNode::Kind kind, const yaml_mark_t& mark, std::string anchor) {
     check_depth(mark, stack_.size() + 1);
+    anchors_.erase(anchor);  // from here on the name is this value's, or that of one within it
     stack_.push_back({make(kind, mark), std::move(anchor)});
   }
   void close() {
@@ -174,7 +192,7 @@ class Builder {
     if (!anchor.empty()) {
       // A copy of its own: anchors within anchors are copied once per level.
       count(mark_, size.values);
-      anchors_[anchor] = {node, size.values, size.depth};
+      anchors_.emplace(anchor, Anchored{node, size.values, size.depth});
     }
     if (!stack_.empty()) {
       Size& whole = stack_.back().size;
@@ -197,11 +215,8 @@ class Builder {
       map.has_key = false;
       return;
     }
-    const std::string place =
-        name_ + ":" + std::to_string(node.line) + ":" + std::to_string(node.column) + ": ";
-    if (node.kind != YamlNode::Kind::Scalar) throw Error(place + "a key must be plain text");
-    if (!map.keys.insert(node.text).second)
-      throw Error(place + "key '" + node.text + "' appears twice");
+    if (node.kind != YamlNode::Kind::Scalar) fail(node, "a key must be plain text");
+    if (!map.keys.insert(node.text).second) fail(node, "key '" + node.text + "' appears twice");
     map.entry = {node.text, node.line, node.column, {}};
     map.has_key = true;
   }

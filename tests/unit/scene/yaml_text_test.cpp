@@ -44,6 +44,17 @@ TEST_F(YamlScenes, NothingIsNoTextUnlessItIsQuoted) {
   EXPECT_EQ(model.cameras.at(0).name, "null");
 }
 
+// The last one that began before the alias, be it within a value of the same name.
+TEST_F(YamlScenes, AnchorsMayBeNamedAgain) {
+  const Model model = read(
+      "materials: &a {one: &a {body: 0.1}, two: *a, three: {body: &a 0.3}}\n"
+      "cameras:\n- {name: c, perspective: {eye: [0, 0, 1], target: [0, *a, 0], yfov: 60}}\n"
+      "objects:\n- {material: one, box: {size: [1, 1, 1]}}\n"
+      "- {material: two, box: {size: [1, 1, 1]}}\n");
+  EXPECT_EQ(number(*material_named(model, "two").body_reflectance), 0.1);
+  ASSERT_EQ(model.cameras.size(), 1u);
+}
+
 // An UTF-8 mark at the beginning, as some editors write it.
 TEST_F(YamlScenes, ByteOrderMarksAreNoText) {
   write("scene.yaml",
