@@ -21,7 +21,6 @@ from suite import program
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE = "96x72"
-REFERENCE_SEED = 24301
 # scene: samples of the reference, errors of pixels, errors of blocks
 SCENES = {
     "scenes/cornell/cornell.yaml": (4096, [0.1, 0.05], [0.02, 0.01]),
@@ -31,18 +30,6 @@ SCENES = {
     "scenes/benchmark/daylit_atrium.yaml": (512, [0.2], [0.05]),
     "../shared/scenes/modern_hall.glb": (2048, [0.1], [0.02]),
 }
-
-
-def rays_of(stats):
-    return sum(n for name, n in stats["counters"].items() if name.startswith("rays.") and name != "rays.refused")
-
-
-def reference_of(args, scene, samples, folder):
-    file = folder / f"{scene.stem}-{SIZE}-{samples}.exr"
-    if not file.exists():
-        program.atrium(args.atrium, "render", scene, "-o", file, "--size", SIZE, "--method", "path", "--samples",
-                       samples, "--seed", REFERENCE_SEED)
-    return file
 
 
 def measure(args, scene, reference, kind, asked, folder):
@@ -69,9 +56,27 @@ def row(scene, kind, asked, runs):
              f"{math.sqrt(statistics.mean(v * v for v in found)):.2f}", f"{worst:.2f}", f"{statistics.mean(stated):.2f}",
              f"{statistics.mean(bias):+.2f} ± {statistics.stdev(bias) / math.sqrt(len(bias)):.2f}",
              f"{statistics.mean(cost.cpu for cost, _, _ in runs):.1f}",
-             f"{statistics.mean(rays_of(stats) for _, stats, _ in runs):.2g}",
+             f"{statistics.mean(program.rays_of(stats['counters']) for _, stats, _ in runs):.2g}",
              f"{100 * runs[0][2][kind]['reference_noise']:.2g} %", str(missed)]
     return "| " + " | ".join(cells) + " |"
+
+
+def page(seeds, measured, rows, skipped):
+    """What is known so far; written after every row, so an interrupt loses no more than one."""
+    text = f"""# Found against asked error
+
+Made by `benchmarks/asked_error.py`: {seeds} seeds, each a whole process with a radiosity of its own, {SIZE} pixels, one
+thread. *found*: RMS over the seeds against path tracing ({", ".join(measured)} samples of a pixel), its noise subtracted; *95 %*: the
+worst of that share of the seeds; *stated*: what the pictures say of themselves, in the mean; all three in shares of the error
+asked for. *bias*: of the mean luminance, with its standard error over the seeds. *noise*: of the reference, of pixels or of
+blocks. *missed*: runs that did not reach the error asked for, by what they state.
+
+| scene | asked | found | 95 % | stated | bias % | CPU s | rays | noise | missed |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
+""" + "\n".join(rows) + "\n"
+    if skipped:
+        text += f"\nSkipped, models that were not there: {', '.join(skipped)}.\n"
+    return text
 
 
 def main():
@@ -86,7 +91,7 @@ def main():
         parser.error("--seeds: at least 2")
     references = ROOT / "build/benchmarks/references"
     references.mkdir(parents=True, exist_ok=True)
-    rows, skipped = [], []
+    rows, skipped, measured = [], [], []
     for name, (samples, pixels, blocks) in SCENES.items():
         scene = (ROOT / name).resolve()
         if args.only not in scene.stem:
@@ -94,26 +99,13 @@ def main():
         if not scene.exists():
             skipped.append(scene.stem)
             continue
-        reference = reference_of(args, scene, samples, references)
+        reference = program.path_reference(args.atrium, scene, references, SIZE, samples)
+        measured.append(f"{scene.stem} {samples}")
         for kind, asked in [("pixel", e) for e in pixels] + [("block", e) for e in blocks]:
             with tempfile.TemporaryDirectory() as folder:
                 rows.append(row(scene, kind, asked, measure(args, scene, reference, kind, asked, pathlib.Path(folder))))
             print(rows[-1], file=sys.stderr, flush=True)
-    samples = ", ".join(f"{pathlib.Path(name).stem} {n}" for name, (n, _, _) in SCENES.items())
-    text = f"""# Found against asked error
-
-Made by `benchmarks/asked_error.py`: {args.seeds} seeds, each a whole process with a radiosity of its own, {SIZE} pixels, one
-thread. *found*: RMS over the seeds against path tracing ({samples} samples of a pixel), its noise subtracted; *95 %*: the
-worst of that share of the seeds; *stated*: what the pictures say of themselves, in the mean; all three in shares of the error
-asked for. *bias*: of the mean luminance, with its standard error over the seeds. *noise*: of the reference, of pixels or of
-blocks. *missed*: runs that did not reach the error asked for, by what they state.
-
-| scene | asked | found | 95 % | stated | bias % | CPU s | rays | noise | missed |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
-""" + "\n".join(rows) + "\n"
-    if skipped:
-        text += f"\nSkipped, models that were not there: {', '.join(skipped)}.\n"
-    args.out.write_text(text, encoding="utf-8")
+            args.out.write_text(page(args.seeds, measured, rows, skipped), encoding="utf-8")
 
 
 if __name__ == "__main__":

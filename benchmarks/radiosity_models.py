@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+from suite import program
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HEAD = ("| model | triangles | elements | rays (million) | wall s | CPU s | error estimate % | emitted | absorbed % "
         "| escaped % | missing % (s.e.) | balance | peak MB |")
@@ -46,7 +48,7 @@ def verdict(flux, asked_error):
 
 def row(model, stats, asked_error):
     counters, flux = stats["counters"], stats["radiosity"]["flux"]
-    rays = sum(n for name, n in counters.items() if name.startswith("rays.")) - counters.get("rays.refused", 0)
+    rays = program.rays_of(counters)
     emitted = flux["emitted"]
     share = (lambda x: f"{100 * x / emitted:.2f}") if emitted > 0 else (lambda x: "-")
     missing = emitted - flux["absorbed"] - flux["escaped"]

@@ -11,6 +11,9 @@ import tempfile
 import time
 
 
+REFERENCE_SEED = 24301
+
+
 class Failed(Exception):
     """A program that did not end as it should; the text has its last words."""
 
@@ -63,6 +66,20 @@ def atrium(program, *arguments):
         stats = json.loads(file.read_text(encoding="utf-8"))
     cost.memory = stats["peak_memory_mb"]
     return cost, stats
+
+
+def rays_of(counters):
+    """All rays that were traced, of the counters of `--stats`."""
+    return sum(n for name, n in counters.items() if name.startswith("rays.") and name != "rays.refused")
+
+
+def path_reference(program, scene, folder, size, samples):
+    """A picture by path tracing, with a seed that no other picture has; kept in the folder for later runs."""
+    file = folder / f"{scene.stem}-{size}-{samples}.exr"
+    if not file.exists():
+        atrium(program, "render", scene, "-o", file, "--size", size, "--method", "path", "--samples", samples,
+               "--seed", REFERENCE_SEED)
+    return file
 
 
 def median(costs):

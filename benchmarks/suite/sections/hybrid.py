@@ -8,7 +8,6 @@ TITLE = "Hybrid against path tracing at equal error"
 
 SIZE = "96x72"
 LIMIT = 60  # of one picture [s]
-REFERENCE_SEED = 24301
 # scene: samples of the reference, and the errors asked for by measure
 SCENES = {
     "cornell/cornell": (4096, {"pixel": [0.1, 0.05, 0.02], "block": [0.02, 0.01, 0.005]}),
@@ -38,28 +37,6 @@ def name_of(scene):
 def file_of(context, scene):
     """A scene of this repository, or a model that is not part of it and lies beside it, or does not."""
     return context.root.parent / "shared/scenes" / scene if scene.endswith(".glb") else context.scene(scene)
-
-
-def reference_of(context, scene, samples):
-    """A picture by path tracing, kept for later runs."""
-    file = context.folder("references") / f"{name_of(scene)}-{SIZE}-{samples}.exr"
-    if not file.exists():
-        program.atrium(
-            context.atrium,
-            "render",
-            file_of(context, scene),
-            "-o",
-            file,
-            "--size",
-            SIZE,
-            "--method",
-            "path",
-            "--samples",
-            samples,
-            "--seed",
-            REFERENCE_SEED,
-        )
-    return file
 
 
 def picture(context, scene, method, kind, error, reference):
@@ -92,7 +69,7 @@ def picture(context, scene, method, kind, error, reference):
         "high": found["high"],
         "noise": found["reference_noise"],
         "stated": stats["error"]["estimate" if kind == "pixel" else "estimate_block"],
-        "rays": sum(v for n, v in stats["counters"].items() if n.startswith("rays.") and n != "rays.refused"),
+        "rays": program.rays_of(stats["counters"]),
         "reached": stats["error"]["stopped_by"] == "error",
     }
 
@@ -104,7 +81,9 @@ def measure(context):
         if not file_of(context, scene).exists():
             print(f"{name_of(scene)}: skipped, there is no {file_of(context, scene)}", flush=True)
             continue
-        reference = reference_of(context, scene, samples)
+        reference = program.path_reference(
+            context.atrium, file_of(context, scene), context.folder("references"), SIZE, samples
+        )
         for kind, asked in errors.items():
             for error in asked + (MORE.get(scene, {}).get(kind, []) if context.thorough else []):
                 line = {"kind": kind, "asked": error}
@@ -183,7 +162,7 @@ def page(data, images):
     head = ["scene", "asked", *(f"hybrid: {c}" for c in costs), *(f"path: {c}" for c in costs), "CPU path / hybrid"]
     return f"""Both methods are asked for an error (`--error` of pixels, `--error-block` of 8x8 blocks), so the path
 tracer samples adaptively, too; {SIZE} pixels, seed 1, start and solve included. *found*: against a path traced reference
-({references} samples of a pixel, seed {REFERENCE_SEED}), its noise subtracted, with the 95 % interval, which is wide
+({references} samples of a pixel, seed {program.REFERENCE_SEED}), its noise subtracted, with the 95 % interval, which is wide
 where the reference is noisy; `~`: this noise, of pixels or of blocks, is more than a quarter of the error asked.
 `-`: the limit of {LIMIT} s of wall time came first. Under 2 s: median of three runs.
 {skipped and chr(10) + skipped}
