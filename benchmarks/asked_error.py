@@ -24,11 +24,12 @@ SIZE = "96x72"
 # scene: samples of the reference, errors of pixels, errors of blocks
 SCENES = {
     "scenes/cornell/cornell.yaml": (4096, [0.1, 0.05], [0.02, 0.01]),
-    "scenes/benchmark/cornell_glass.yaml": (2048, [0.1], [0.02]),
-    "scenes/benchmark/cove_office.yaml": (2048, [0.1, 0.05], [0.05]),
+    "scenes/benchmark/mirror_atrium.yaml": (2048, [0.1], [0.02, 0.01]),
+    "scenes/benchmark/cornell_glass.yaml": (8192, [0.1], [0.02]),
+    "scenes/benchmark/cove_office.yaml": (2048, [0.1, 0.05], [0.05, 0.02]),
     "scenes/benchmark/corridor_door.yaml": (2048, [0.1], [0.02]),
     "scenes/benchmark/daylit_atrium.yaml": (512, [0.2], [0.05]),
-    "../shared/scenes/modern_hall.glb": (2048, [0.1], [0.02]),
+    "../shared/scenes/modern_hall.glb": (2048, [0.1], [0.02, 0.01]),
 }
 
 

@@ -32,6 +32,8 @@ double elements_of(const scene::Scene& scene, double edge) {
 }
 
 constexpr double kEdge = 0.13;  // [m] for pictures of 2 % and better; coarser ones in proportion
+// Blocks average the pattern of elements, and gathering the noise of many: both may be coarser.
+constexpr double kBlockEdge = 1.7, kBlockNoise = 2.5;
 
 /// Those are read from the mesh where they are seen.
 bool has_caustics(const scene::Features& features) {
@@ -68,14 +70,17 @@ PictureEffort plan_effort(RenderCommand& c, const scene::Scene& scene,
   if (c.method == trace::Method::Hybrid && c.solution.empty()) {
     const bool caustics = has_caustics(features);
     const double certain = caustics ? error : 2.0 * error;
+    const bool blocks_only = !(c.error > 0.0);
     c.solve.quality = certain > 0.06   ? Quality::Draft
                       : certain > 0.02 ? Quality::Normal
                                        : Quality::High;
     std::string radiosity = "as asked";
     if (c.solve.solver == SolverChoice::Rows) {
-      c.solve.error = std::clamp(certain, 0.01, 0.1);
+      const double noise = blocks_only ? kBlockNoise * certain : certain;
+      c.solve.error = std::clamp(noise, 0.01, 0.1);
       // Elements grow with the error, as the noise of what is read from them does.
-      const double least = elements_of(scene, kEdge * std::max(1.0, error / 0.02));
+      const double edge = blocks_only ? kBlockEdge * kEdge : kEdge;
+      const double least = elements_of(scene, edge * std::max(1.0, error / 0.02));
       const double growth = certain > 0.04 ? 0.75 : 1.2;
       c.solve.max_elements = static_cast<std::uint32_t>(
           std::clamp(20000.0 * std::pow(0.04 / certain, growth), least, 1.5e5));

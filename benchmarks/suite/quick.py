@@ -19,6 +19,7 @@ CASES = {
     "cove": ("render benchmark/cove_office --size 64x48 --error 0.1", "a.pfm"),
     "daylight": ("render benchmark/daylit_atrium --size 48x48 --quality draft", "a.pfm"),
     "blocks to an error": ("render benchmark/corridor_door --size 64x48 --error-block 0.05", "a.exr"),
+    "small error of blocks": ("render cornell/cornell --size 64x48 --error-block 0.01", "a.pfm"),
     "subdivision": ("render lounge/lounge --size 64x48 --quality draft", "a.pfm"),
     "solve a floor": ("solve benchmark/office_floor --quality draft", "a.atrium"),
     "solve to an error": ("solve benchmark/furnished_room --error 0.1", "a.atrium"),

@@ -1,5 +1,7 @@
 #include "make_rows.h"
 
+#include <numeric>
+
 #include "bounces.h"
 #include "draws.h"
 #include "hot_light.h"
@@ -109,7 +111,8 @@ void guide_rays(RowState<N>& s) {
     for (const SideIndex i : s.problem.sides.active) light[i] += b[i].mean();
   }
   // Squares of what is left are numbers whatever the unit of light.
-  const float most = *std::max_element(light.begin(), light.end());
+  const float most = std::accumulate(light.begin(), light.end(), 0.0f,
+                                     [](float a, float b) { return std::max(a, b); });
   if (most > 0.0f)
     for (float& b : light) b /= most;
   s.ray_guide = HemisphereGuide(s.problem, s.regions, s.rows, light);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "for_pixels.h"
+
 namespace atrium::trace {
 namespace {
 
@@ -127,6 +129,8 @@ void Film::put_samples(std::size_t i, PictureSamples& samples) const {
   if (!changes_.empty())
     for (std::size_t r = 0; r < kReplicates; ++r) value[r] += changes_[i].replicate[r];
   samples.mean[i] = mean(i);
+  if (!missed_.empty())
+    for (std::size_t r = 0; r < kReplicates; ++r) samples.missed[r][i] = missed_[i][r];
   for (std::size_t h = 0; h < 2; ++h) {
     Rgb& deviation = samples.deviation[h][i];
     deviation = (value[2 * h] - value[2 * h + 1]) * replicate_factor(i, h);
@@ -147,9 +151,8 @@ PictureSamples Film::develop() {
     for (auto& half : samples.change)
       for (auto& replicate : half) replicate.resize(pixels_.size());
   if (!missed_.empty())
-    for (std::size_t r = 0; r < kReplicates; ++r)
-      for (const auto& pixel : missed_) samples.missed[r].push_back(pixel[r]);
-  for (std::size_t i = 0; i < pixels_.size(); ++i) put_samples(i, samples);
+    for (auto& replicate : samples.missed) replicate.resize(pixels_.size());
+  for_pixels(width_, height_, [&](int, int, std::size_t i) { put_samples(i, samples); });
   return samples;
 }
 

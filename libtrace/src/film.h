@@ -95,9 +95,10 @@ class Film {
   [[nodiscard]] bool usable(std::size_t pixel) const;
   [[nodiscard]] ShareGuides guides() const;
   [[nodiscard]] float light_unit() const;
-  [[nodiscard]] Illumination illumination(std::size_t part, float unit) const;
+  [[nodiscard]] Illumination illumination(const ShareGuides& where, std::size_t part,
+                                          float unit) const;
   [[nodiscard]] std::vector<Rgb> share_weights(float unit) const;
-  [[nodiscard]] std::vector<Rgb> field_illumination(float unit) const;
+  [[nodiscard]] std::vector<Rgb> field_illumination(const ShareGuides& where, float unit) const;
   void offer_by_field(const ShareGuides& where, const std::vector<Rgb>& field,
                       const Illumination& own, ShareChoice& choice) const;
   void share();

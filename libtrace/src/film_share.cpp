@@ -4,12 +4,17 @@
 
 #include "error_scale.h"
 #include "film.h"
+#include "for_pixels.h"
 #include "share_choice.h"
 
 namespace atrium::trace {
 namespace {
 
 constexpr int kBesideField = 1;  // levels of what the field lacks; more of them are hardly chosen
+
+Rgb illumination_of(const Rgb& radiance, const Rgb& albedo, float unit) {
+  return Rgb::generate([&](int c) { return radiance[c] / unit / albedo[c]; });
+}
 
 }  // namespace
 
@@ -36,21 +41,19 @@ float Film::light_unit() const {
   return most > 0.0 ? static_cast<float>(std::exp2(std::ceil(std::log2(most)))) : 1.0f;
 }
 
-Illumination Film::illumination(std::size_t part, float unit) const {
+Illumination Film::illumination(const ShareGuides& where, std::size_t part, float unit) const {
   Illumination light;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+  for (std::vector<Rgb>& replicate : light.replicate) replicate.resize(pixels_.size());
+  light.variance.resize(pixels_.size());
+  for_pixels(width_, height_, [&](int, int, std::size_t i) {
+    if (!where.shows_body(i)) return;
     const Body& body = bodies_[i];
-    const bool used = usable(i);
     for (std::size_t r = 0; r < kReplicates; ++r)
-      light.replicate[r].push_back(used ? Rgb::generate([&](int c) {
-        return body.radiance[part][r][c] / unit / body.albedo[c];
-      })
-                                        : Rgb::zero());
+      light.replicate[r][i] = illumination_of(body.radiance[part][r], body.albedo, unit);
     const double y = static_cast<double>(luminance(body.albedo)) * static_cast<double>(unit);
     const double n = pixels_[i].count;
-    light.variance.push_back(
-        used ? static_cast<float>(2.0 * body.m2[part] / (n * (n - 1.0) * y * y)) : 0.0f);
-  }
+    light.variance[i] = static_cast<float>(2.0 * body.m2[part] / (n * (n - 1.0) * y * y));
+  });
   return light;
 }
 
@@ -68,16 +71,16 @@ std::vector<Rgb> Film::share_weights(float unit) const {
 }
 
 // What the field alone says of a pixel; empty if none was read.
-std::vector<Rgb> Film::field_illumination(float unit) const {
+std::vector<Rgb> Film::field_illumination(const ShareGuides& where, float unit) const {
+  if (std::none_of(bodies_.begin(), bodies_.end(),
+                   [](const Body& body) { return body.field.max() > 0.0f; }))
+    return {};
   std::vector<Rgb> field(pixels_.size());
-  bool any = false;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const Body& body = bodies_[i];
-    any = any || body.field.max() > 0.0f;
-    if (usable(i))
-      field[i] = Rgb::generate([&](int c) { return body.field[c] / unit / body.albedo[c]; });
-  }
-  return any ? field : std::vector<Rgb>();
+  for_pixels(width_, height_, [&](int, int, std::size_t i) {
+    if (where.shows_body(i))
+      field[i] = illumination_of(bodies_[i].field, bodies_[i].albedo, unit);
+  });
+  return field;
 }
 
 // The field is of elements that have noise of their own. What samples find beside it has the shape
@@ -86,11 +89,13 @@ std::vector<Rgb> Film::field_illumination(float unit) const {
 void Film::offer_by_field(const ShareGuides& where, const std::vector<Rgb>& field,
                           const Illumination& own, ShareChoice& choice) const {
   Illumination whole = own;
-  for (std::vector<Rgb>& replicate : whole.replicate)
-    for (std::size_t i = 0; i < field.size(); ++i) replicate[i] += field[i];
+  for_pixels(width_, height_, [&](int, int, std::size_t i) {
+    for (std::vector<Rgb>& replicate : whole.replicate) replicate[i] += field[i];
+  });
   share_by_levels(where, whole, kShareLevels, [&](Illumination&& shared) {
-    for (std::vector<Rgb>& replicate : shared.replicate)
-      for (std::size_t i = 0; i < field.size(); ++i) replicate[i] -= field[i];
+    for_pixels(width_, height_, [&](int, int, std::size_t i) {
+      for (std::vector<Rgb>& replicate : shared.replicate) replicate[i] -= field[i];
+    });
     choice.offer(shared);
   });
   Illumination& nothing = whole;
@@ -104,18 +109,20 @@ void Film::share() {
   const std::vector<std::uint8_t> kinds = surface_kinds(where);
   const float unit = light_unit();
   const std::vector<Rgb> weights = share_weights(unit);
-  const std::vector<Rgb> field = field_illumination(unit);
+  const std::vector<Rgb> field = field_illumination(where, unit);
   changes_.assign(pixels_.size(), {});
   for (std::size_t part = 0; part < kParts; ++part) {
-    const Illumination own = illumination(part, unit);
+    const Illumination own = illumination(where, part, unit);
     const bool by_field = part == kIndirect && !field.empty();
     ShareChoice choice(where, kinds, weights, own);
     share_by_levels(where, own, by_field ? kBesideField : kShareLevels,
                     [&](Illumination&& shared) { choice.offer(shared); });
     if (by_field) offer_by_field(where, field, own, choice);
     for (const std::size_t half : {0U, 1U})
-      for (std::size_t i = 0; i < pixels_.size(); ++i)
-        if (choice.taken(half, i) && usable(i)) take_shared(i, part, half, choice.best(), unit);
+      for_pixels(width_, height_, [&](int, int, std::size_t i) {
+        if (choice.taken(half, i) && where.shows_body(i))
+          take_shared(i, part, half, choice.best(), unit);
+      });
   }
 }
 

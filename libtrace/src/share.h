@@ -16,7 +16,9 @@ struct ShareGuides {
   // By pixel, row by row; vectors number by number, as weights are found for many pixels at once.
   std::array<std::vector<float>, 3> positions = {};  ///< mean over the pixel
   std::array<std::vector<float>, 3> normals = {};  ///< mean shading normal; shorter than 1 at edges
-  std::vector<float> depth = {};                   ///< [m]; 0: nothing there
+  std::vector<float> depth = {};                   ///< [m]; 0: nothing there to share
+
+  [[nodiscard]] bool shows_body(std::size_t pixel) const { return depth[pixel] > 0.0f; }
 
   /// The next pixel.
   void add(const Vec3f& position, const Vec3f& normal, float depth_there) {

@@ -478,7 +478,8 @@ TEST(MaterialQuery, NumbersRoundTrip) {
   for (const double c : {0.0, 0.1, 1.0 / 3.0, 7.0, 123456.789}) {
     std::string in(32, '\0');
     in.resize(static_cast<std::size_t>(std::snprintf(in.data(), in.size(), "%.17g", c)));
-    const std::string answer = answer_queries("[" + query("norm", "\"c\": " + in) + "]");
+    std::string asked = query("norm", "\"c\": " + in);
+    const std::string answer = answer_queries(asked.insert(0, 1, '[').append(1, ']'));
     const std::size_t at = answer.find("\"N\": ");
     ASSERT_NE(at, std::string::npos) << answer;
     const char* text = answer.c_str() + at + 5;

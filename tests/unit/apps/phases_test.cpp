@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -41,7 +42,7 @@ TEST(PhaseClock, CountsProcessorTimeNotWaiting) {
 TEST(PeakMemory, GrowsWithUse) {
   const double before = atrium::app::peak_memory_mb();
   EXPECT_GT(before, 1.0);
-  std::string block(64'000'000, 'x');
+  const std::vector<char> block(64'000'000, 'x');
   EXPECT_GT(block[1234567], 'a');
   EXPECT_GT(atrium::app::peak_memory_mb(), before + 50.0);
 }

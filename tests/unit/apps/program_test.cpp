@@ -415,7 +415,7 @@ TEST_F(AtriumRun, InfoListsDecisions) {
   EXPECT_NE(r.out.find("needed:"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("skipped:"), std::string::npos) << r.out;
   const Result json = run(folder, "info a.obj --json");
-  EXPECT_EQ(json.out.find("{"), 0u);
+  EXPECT_EQ(json.out.find('{'), 0u);
   EXPECT_NE(json.out.find("\"decisions\""), std::string::npos);
 }
 

@@ -55,7 +55,7 @@ scene::Scene room(bool textured) {
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     s.objects[i].name = "part " + std::to_string(i);
     s.materials[s.objects[i].material.value].name =
-        "m" + std::to_string(s.objects[i].material.value);
+        std::string("m").append(std::to_string(s.objects[i].material.value));
   }
   s.origin = Vec3d(10, 0, -5);
   if (textured) {

@@ -154,7 +154,8 @@ TEST(Elements, WallsAroundManySmallThingsKeepTheirs) {
   const auto m = maker.material(test::diffuse(0.5));
   maker.room({0, 0, 0}, {6, 4, 3}, m);
   for (int i = 0; i < 400; ++i) {
-    const auto x = static_cast<float>(i % 20), y = static_cast<float>(i / 20);
+    const int row = i / 20;
+    const auto x = static_cast<float>(i % 20), y = static_cast<float>(row);
     maker.quad(m, {0.2f * x + 1, 0.1f * y + 1, 1}, {0.2f * x + 1.1f, 0.1f * y + 1, 1},
                {0.2f * x + 1.1f, 0.1f * y + 1.05f, 1}, {0.2f * x + 1, 0.1f * y + 1.05f, 1});
   }

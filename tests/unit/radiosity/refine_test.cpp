@@ -55,7 +55,7 @@ TEST(Refine, AreasAreConserved) {
     Elements e = make_elements(scene, {.element_size = 0.5});
     std::mt19937 random(11);
     for (int round = 0; round < 4; ++round) {
-      const Refined r = refine(scene, e, test::random_marks(e, 0.3, random));
+      Refined r = refine(scene, e, test::random_marks(e, 0.3, random));
       ASSERT_GT(r.elements.layout.element_count(), e.layout.element_count());
       std::vector<double> area(e.layout.element_count(), 0.0);
       ASSERT_EQ(r.parent.size(), r.elements.layout.element_count());
@@ -138,7 +138,7 @@ TEST(Refine, WholeElementsKeepOrderKeyAndPieces) {
   Elements e = make_elements(scene, {.element_size = 0.5});
   std::mt19937 random(4);
   for (int round = 0; round < 3; ++round) {
-    const Refined r = refine(scene, e, test::random_marks(e, 0.1, random));
+    Refined r = refine(scene, e, test::random_marks(e, 0.1, random));
     std::set<std::uint64_t> keys;
     std::size_t whole = 0;
     for (std::uint32_t i = 0; i < r.parent.size(); ++i) {

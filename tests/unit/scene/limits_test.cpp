@@ -34,7 +34,8 @@ std::string message_of(const std::function<void()>& action) {
 std::string reading(const std::filesystem::path& file) {
   return message_of([&] { static_cast<void>(read_model({file})); });
 }
-#define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << (text)
+#define EXPECT_SAYS(text, words) \
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, std::string(words), text)
 
 // ---- YAML ----
 

@@ -48,7 +48,8 @@ Rgb mean(const RenderResult& r) {
   const std::size_t stride = r.image.channels.size();
   for (std::size_t i = 0; i < r.image.pixels.size(); i += stride)
     for (int c = 0; c < 3; ++c) sum[c] += r.image.pixels[i + static_cast<std::size_t>(c)];
-  return sum / static_cast<float>(r.image.pixels.size() / stride);
+  const std::size_t pixels = r.image.pixels.size() / stride;
+  return sum / static_cast<float>(pixels);
 }
 
 // A grey furnace: radiance 1 / (1 - rho) = 2 whatever the number of bands; no pack is grey itself.

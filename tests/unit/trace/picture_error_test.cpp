@@ -1,5 +1,4 @@
 #include "picture_error.h"
-#include "field_error.h"
 
 #include <cmath>
 #include <random>

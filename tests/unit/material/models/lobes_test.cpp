@@ -30,8 +30,9 @@ Rgb3 rgb(float a, float b, float c) {
 std::vector<Case> cases() {
   std::vector<Case> all;
   const Rgb3 one = Rgb3::one(), metal(1e6f);
-  const auto add = [&](const std::string& name, double number, Lobe lobe, double limit = 1.0) {
-    all.push_back({name + " " + std::to_string(number), std::move(lobe), limit});
+  const auto add = [&](const std::string& name, double number, const Lobe& lobe,
+                       double limit = 1.0) {
+    all.push_back({name + " " + std::to_string(number), lobe, limit});
   };
   for (const float p : {0.0f, 0.5f, 1.0f, 5.0f, 50.0f, 1e4f}) {
     add("phong", p, PhongLobe<3>{{}, one, p});
