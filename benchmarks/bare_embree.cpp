@@ -57,9 +57,9 @@ void attach(RTCScene to, RTCGeometry g, std::uint32_t id, std::uint32_t mask) {
 
 RTCGeometry BareEmbree::geometry(const scene::Mesh& mesh) const {
   RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  std::memcpy(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                      mesh.positions.size()),
-              mesh.positions.data(), mesh.positions.size() * 12);
+  auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
+      g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size()));
+  for (const Vec3f& p : mesh.positions) vertex = std::copy_n(p.data(), 3, vertex);
   std::memcpy(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
                                       mesh.triangles.size()),
               mesh.triangles.data(), mesh.triangles.size() * 12);

@@ -177,9 +177,10 @@ class Maker {
 scene::Scene make_building() {
   Maker maker;
   maker.shell();
-  for (std::uint32_t room = 0; room < 16; ++room)
-    maker.furniture({(room % 4) * kRoomX + 0.5 * kWall, (room / 4) * kRoomY + 0.5 * kWall, 0},
-                    room);
+  for (std::uint32_t room = 0; room < 16; ++room) {
+    const std::uint32_t column = room % 4, row = room / 4;
+    maker.furniture({column * kRoomX + 0.5 * kWall, row * kRoomY + 0.5 * kWall, 0}, room);
+  }
   return scene::build_scene(maker.take());
 }
 

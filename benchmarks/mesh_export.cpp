@@ -39,7 +39,8 @@ scene::SurfaceField noisy(const radiosity::Elements& elements) {
   field.valid.assign(2 * field.element_count(), 1);
   field.standard_error.assign(2 * field.element_count(), 1.0f);
   for (std::size_t i = 0; i < 6 * field.element_count(); ++i) {
-    const float x = 0.001f * static_cast<float>(i / 6);
+    const std::size_t element = i / 6;
+    const float x = 0.001f * static_cast<float>(element);
     const float noise = std::fmod(static_cast<float>(i) * 0.61803399f, 1.0f);
     field.irradiance.direct.push_back(500.0f + 100.0f * std::sin(x) + 5.0f * noise);
     field.irradiance.indirect.push_back(200.0f + 20.0f * std::cos(x) + 2.0f * noise);

@@ -23,7 +23,8 @@ scene::Scene hall(int count) {
   const int across = static_cast<int>(std::ceil(std::sqrt(count)));
   for (int i = 0; i < count; ++i) {
     const double step = kSide / across;
-    maker.quad(lamp, {(i % across + 0.4) * step, kHeight - 0.1, (i / across + 0.4) * step},
+    const int column = i % across, row = i / across;
+    maker.quad(lamp, {(column + 0.4) * step, kHeight - 0.1, (row + 0.4) * step},
                {0.1, 0, 0}, {0, 0, 0.1});
   }
   return scene::build_scene(maker.model());

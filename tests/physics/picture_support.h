@@ -28,7 +28,8 @@ struct Picture {
   RenderResult result;
 };
 
-inline Picture picture(const scene::Scene& scene, const scene::Camera& camera, RenderOptions o,
+inline Picture picture(const scene::Scene& scene, const scene::Camera& camera,
+                       const RenderOptions& o,
                        const material::SpectralBasis& basis = material::SpectralBasis::rgb()) {
   const scene::RayQuery query(scene, {"isa=avx2"});
   Picture p;

@@ -176,7 +176,7 @@ SolveResult expect_solves_changed(scene::Scene changed, const SolveOptions& o) {
   Bench before(furnished());
   const SolveResult old = before.run(o);
   Bench after(std::move(changed));
-  const SolveResult rest = after.run(o, 0, &old);
+  SolveResult rest = after.run(o, 0, &old);
   EXPECT_EQ(rest.field.nodes, old.field.nodes);
   EXPECT_EQ(rest.field.irradiance.direct, old.field.irradiance.direct);
   EXPECT_EQ(rest.field.irradiance.caustic, old.field.irradiance.caustic);

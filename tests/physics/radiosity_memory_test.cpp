@@ -71,7 +71,8 @@ Measured measure(const scene::RayQuery& query, const SolveOptions& options) {
   most = before;
   SolveResult result = solve(query, material::SpectralBasis::grey(), options);
   const auto own = static_cast<std::uint64_t>(most - before);
-  return {std::move(result), own + result.memory.scene + result.memory.bvh};
+  const std::uint64_t allocated = own + result.memory.scene + result.memory.bvh;
+  return {std::move(result), allocated};
 }
 
 class MemoryLimit : public ::testing::TestWithParam<bool> {};

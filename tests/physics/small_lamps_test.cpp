@@ -99,8 +99,9 @@ TEST(SmallLamps, BetweenPixels) {
 // Many in one pixel, far more of them than there are parts of a pixel.
 TEST(SmallLamps, ManyInOnePixel) {
   std::vector<Vec2d> places;
-  for (int i = 0; i < 40; ++i)
-    places.emplace_back(0.01 + 0.1 * (i % 8) / 8.0, 0.01 + 0.1 * (i / 8) / 5.0);
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 8; ++column)
+      places.emplace_back(0.01 + 0.1 * column / 8.0, 0.01 + 0.1 * row / 5.0);
   const scene::Scene s = lamps_at(places, 0.004);
   const double share = 40.0 * 0.032 * 0.032;
   EXPECT_NEAR(filled(picture(s, camera_of(scene::Camera::Kind::Perspective),
